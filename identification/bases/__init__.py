@@ -1,0 +1,1 @@
+"""Basis functions of one scheduling variable, one family a file."""

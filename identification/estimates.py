@@ -1,0 +1,26 @@
+"""What estimators return: a model, how the computation ended, and how far the model may be believed."""
+
+from dataclasses import dataclass
+
+from identification.models import LocalModel, LpvModel
+from identification.outcome import Outcome, TestResult
+
+
+@dataclass(frozen=True, eq=False)
+class LocalEstimate:
+    """A local model with its outcome, tests of its residual, and its fit in % (100 (1 − ‖y − ŷ‖/‖y − ȳ‖))."""
+
+    model: LocalModel
+    outcome: Outcome
+    tests: tuple[TestResult, ...]
+    fit_percent: float
+
+
+@dataclass(frozen=True, eq=False)
+class LpvEstimate:
+    """A parameter-varying model with its outcome, tests, and the local estimates that it stands on (may be empty)."""
+
+    model: LpvModel
+    outcome: Outcome
+    tests: tuple[TestResult, ...]
+    local: tuple[LocalEstimate, ...]

@@ -1,0 +1,125 @@
+"""Levenberg–Marquardt for whitened residuals, with a region that must not be left."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from identification.arrays import FloatArray
+from identification.outcome import Outcome
+
+Evaluate = Callable[[FloatArray], tuple[FloatArray, FloatArray]]
+
+
+@dataclass(frozen=True, eq=False)
+class LeastSquaresSolution:
+    """A minimiser x (n,) of ‖r(x)‖² with r (R,) and J = ∂r/∂x (R, n) there."""
+
+    x: FloatArray
+    residual: FloatArray
+    jacobian: FloatArray
+    outcome: Outcome
+
+    @property
+    def cost(self) -> float:
+        """‖r(x)‖²."""
+        return float(self.residual @ self.residual)
+
+    @property
+    def covariance(self) -> FloatArray:
+        """(JᵀJ)⁻¹, the covariance of x where r has unit variance; infinite variances where J has no full column rank."""
+        scale, factor = _scaled_factor(self.jacobian)
+        if _is_singular(factor):
+            return np.full((len(self.x), len(self.x)), np.inf)
+        inverse = np.linalg.inv(factor) / scale[:, None]
+        return inverse @ inverse.T
+
+
+def levenberg_marquardt(
+    evaluate: Evaluate,
+    start: FloatArray,
+    feasible: Callable[[FloatArray], bool] | None = None,
+    max_iterations: int = 100,
+    tolerance: float = 1e-9,
+) -> LeastSquaresSolution:
+    """Minimise ‖r(x)‖² where `evaluate(x)` gives r (R,) and J = ∂r/∂x (R, n); steps out of the feasible region are refused.
+
+        (JᵀJ + μ diag JᵀJ) Δ = −Jᵀ r,   stop when the predicted decrease ‖Qᵀr‖² is below `tolerance`² ‖r‖² or rounding
+
+    Each step is solved from a triangular factor of [J r], so that no digits are lost by squaring. The outcome is
+    "not_identifiable" when J has no full column rank at the end, "not_converged" after `max_iterations`.
+    """
+    x = start
+    residual, jacobian = evaluate(x)
+    damping, status = 1e-3, "not_converged"
+    for iteration in range(max_iterations):
+        attainable = _newton_step(residual, jacobian, 0.0)[1]
+        rounding = 1e-26 * float(np.sum((jacobian @ x) ** 2))
+        if attainable <= max(tolerance**2 * float(residual @ residual), rounding):
+            status = "converged"
+            break
+        trial = _accepted(evaluate, x, residual, jacobian, damping, feasible)
+        if trial is None:
+            status = "converged" if attainable <= 1e-6 * (residual @ residual) else "not_converged"
+            break
+        x, residual, jacobian, damping = trial
+    return LeastSquaresSolution(x, residual, jacobian, _outcome(status, jacobian, iteration + 1))
+
+
+def _accepted(
+    evaluate: Evaluate,
+    x: FloatArray,
+    residual: FloatArray,
+    jacobian: FloatArray,
+    damping: float,
+    feasible: Callable[[FloatArray], bool] | None,
+) -> tuple[FloatArray, FloatArray, FloatArray, float] | None:
+    """The first trial point with a lower cost, with the damping for the next step; None when even tiny steps fail."""
+    cost = residual @ residual
+    for _ in range(25):
+        trial = x + _newton_step(residual, jacobian, damping)[0]
+        if feasible is None or feasible(trial):
+            new_residual, new_jacobian = evaluate(trial)
+            new_cost = new_residual @ new_residual
+            if np.isfinite(new_cost) and new_cost < cost:
+                return trial, new_residual, new_jacobian, max(damping / 10, 1e-12)
+        damping = 10 * damping
+    return None
+
+
+def _newton_step(residual: FloatArray, jacobian: FloatArray, damping: float) -> tuple[FloatArray, float]:
+    """The damped step, and ‖Qᵀr‖²: how much an undamped step could take off the cost of the linearised problem."""
+    scale, factor = _scaled_factor(np.column_stack([jacobian, residual]))
+    n = jacobian.shape[1]
+    triangle, projected = factor[:n, :n], factor[:n, n] * scale[n]
+    if damping > 0:
+        triangle = np.vstack([triangle, np.sqrt(damping) * np.eye(n)])
+        projected = np.concatenate([projected, np.zeros(n)])
+    solution = np.linalg.lstsq(triangle, -projected, rcond=1e-13)[0]
+    return solution / scale[:n], float(projected @ projected)
+
+
+def _scaled_factor(matrix: FloatArray) -> tuple[FloatArray, FloatArray]:
+    scale = np.linalg.norm(matrix, axis=0)
+    scale = np.where(scale > 0, scale, 1.0)
+    columns = matrix.shape[1]
+    scaled = matrix / scale
+    if len(scaled) < columns:
+        scaled = np.vstack([scaled, np.zeros((columns - len(scaled), columns))])
+    return scale, np.linalg.qr(scaled, mode="r")
+
+
+def _is_singular(factor: FloatArray) -> bool:
+    values = np.linalg.svd(factor, compute_uv=False)
+    return bool(values[-1] <= 1e-10 * values[0])
+
+
+def _outcome(status: str, jacobian: FloatArray, iterations: int) -> Outcome:
+    if _is_singular(_scaled_factor(jacobian)[1]):
+        advice = "the data do not determine all parameters; excite more frequencies or choose a lower order"
+        return Outcome("not_identifiable", advice, iterations)
+    if status == "converged":
+        return Outcome("converged", "", iterations)
+    return Outcome(
+        "not_converged", "the search stopped before the minimum; choose a lower order or better data", iterations
+    )

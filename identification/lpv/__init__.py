@@ -1,0 +1,1 @@
+"""Estimators over the scheduling range, one a file."""

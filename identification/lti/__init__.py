@@ -1,0 +1,1 @@
+"""Estimators at one operating point, one a file."""

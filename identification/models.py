@@ -1,0 +1,217 @@
+"""Rational models of the Box–Jenkins family at one operating point, and their parameter-varying form."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from identification.arrays import BoolArray, ComplexArray, FloatArray
+from identification.errors import RangeError, ShapeError
+from identification.scheduling import ParameterDependence
+from identification.signals import OperatingPoint
+
+
+@dataclass(frozen=True)
+class RationalStructure:
+    """Orders of y = G u + H e with G = B/A and H = C/D, all four polynomials parametrised independently.
+
+    Discrete time (`sample_time` T in seconds), q = e^{−jωT} [Ghosh2018, (1), (4)]:
+
+        A = 1 + Σ a_i q^i,  B = q^{n_k} Σ b_i q^i,  C = 1 + Σ c_i q^i,  D = 1 + Σ d_i q^i
+
+    Continuous time (`sample_time` None), x = jω/`frequency_scale`, H = 1; n_b > n_a is allowed:
+
+        A = x^{n_a} + a_1 x^{n_a−1} + … + a_{n_a},   B = b_0 x^{n_b} + … + b_{n_b}
+
+    With `delay`, G carries a further factor e^{−jωτ}, τ in seconds. The coefficients stand in the vector
+    ζ = (a_1 …, b_0 …, [τ], c_1 …, d_1 …) of size n; its first `n_plant` entries are ζ_G, the others ζ_H.
+    """
+
+    n_a: int
+    n_b: int
+    n_k: int = 0
+    n_c: int = 0
+    n_d: int = 0
+    sample_time: float | None = None
+    frequency_scale: float = 1.0
+    delay: bool = False
+
+    def __post_init__(self) -> None:
+        for name in ("n_a", "n_b", "n_k", "n_c", "n_d"):
+            if getattr(self, name) < 0:
+                raise RangeError(f"{name} is {getattr(self, name)}; orders must be zero or more", name)
+        if self.sample_time is None and (self.n_k or self.n_c or self.n_d):
+            raise RangeError("n_k, n_c and n_d belong to discrete time; leave them at zero in continuous time", "n_k")
+        if self.sample_time is not None and not (np.isfinite(self.sample_time) and self.sample_time > 0):
+            raise RangeError(f"the sample time is {self.sample_time}; it must be positive", "sample_time")
+        if not (np.isfinite(self.frequency_scale) and self.frequency_scale > 0):
+            raise RangeError(f"the frequency scale is {self.frequency_scale}; it must be positive", "frequency_scale")
+
+    @property
+    def is_discrete(self) -> bool:
+        """True in discrete time."""
+        return self.sample_time is not None
+
+    @property
+    def n_plant(self) -> int:
+        """Number of coefficients of G."""
+        return self.n_a + self.n_b + 1 + self.delay
+
+    @property
+    def n_noise(self) -> int:
+        """Number of coefficients of H."""
+        return self.n_c + self.n_d
+
+    @property
+    def size(self) -> int:
+        """n, the number of entries of ζ."""
+        return self.n_plant + self.n_noise
+
+    @property
+    def coefficient_names(self) -> tuple[str, ...]:
+        """The names of the entries of ζ, in order."""
+        counted = (("a", 1, self.n_a), ("b", 0, self.n_b + 1), ("c", 1, self.n_c), ("d", 1, self.n_d))
+        a, b, c, d = ([f"{letter}{first + i}" for i in range(count)] for letter, first, count in counted)
+        return (*a, *b, *(["tau"] if self.delay else []), *c, *d)
+
+    def split(self, zeta: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]:
+        """(a, b, τ, c, d) of ζ (…, n), without the leading ones; τ has a last axis of size 0 or 1."""
+        if zeta.shape[-1] != self.size:
+            raise ShapeError(f"ζ has {zeta.shape[-1]} entries, this structure has {self.size}", "zeta")
+        ends = np.cumsum([self.n_a, self.n_b + 1, int(self.delay), self.n_c])
+        a, b, tau, c, d = np.split(zeta, ends, axis=-1)
+        return a, b, tau, c, d
+
+    def plant_response(self, zeta: FloatArray, omega: FloatArray) -> ComplexArray:
+        """G(ω; ζ) for ζ (…, n) and ω (F,) in rad/s, as (…, F)."""
+        a, b, tau, _, _ = self.split(zeta)
+        numerator_powers, denominator_powers = self._powers(omega)
+        return self._delay_factor(tau, omega) * (b @ numerator_powers) / _monic(a, denominator_powers)
+
+    def plant_gradient(self, zeta: FloatArray, omega: FloatArray) -> ComplexArray:
+        """∂G/∂ζ_G for ζ (…, n) and ω (F,), as (…, n_plant, F)."""
+        a, b, tau, _, _ = self.split(zeta)
+        numerator_powers, denominator_powers = self._powers(omega)
+        over_a = (self._delay_factor(tau, omega) / _monic(a, denominator_powers))[..., None, :]
+        response = over_a * (b @ numerator_powers)[..., None, :]
+        ratio = over_a / self._delay_factor(tau, omega)[..., None, :]
+        parts = [-response * ratio * denominator_powers[1:], over_a * numerator_powers]
+        if self.delay:
+            parts.append(-1j * omega * response)
+        return np.concatenate(parts, axis=-2)
+
+    def noise_response(self, zeta: FloatArray, omega: FloatArray) -> ComplexArray:
+        """H(ω; ζ) for ζ (…, n) and ω (F,), as (…, F)."""
+        _, _, _, c, d = self.split(zeta)
+        return _monic(c, self._noise_powers(omega, self.n_c)) / _monic(d, self._noise_powers(omega, self.n_d))
+
+    def noise_gradient(self, zeta: FloatArray, omega: FloatArray) -> ComplexArray:
+        """∂H/∂ζ_H for ζ (…, n) and ω (F,), as (…, n_noise, F)."""
+        _, _, _, c, d = self.split(zeta)
+        c_powers, d_powers = self._noise_powers(omega, self.n_c), self._noise_powers(omega, self.n_d)
+        over_d = 1 / _monic(d, d_powers)[..., None, :]
+        response = _monic(c, c_powers)[..., None, :] * over_d
+        return np.concatenate([over_d * c_powers[1:], -response * over_d * d_powers[1:]], axis=-2)
+
+    def poles(self, zeta: FloatArray) -> ComplexArray:
+        """Poles of G for ζ (…, n), as (…, n_a): in the z-plane, or in rad/s in continuous time."""
+        scale = 1.0 if self.is_discrete else self.frequency_scale
+        return scale * _roots(self.split(zeta)[0])
+
+    def stable(self, zeta: FloatArray) -> BoolArray:
+        """Whether G is stable and H stable with a stable inverse, for ζ (…, n), as (…,)."""
+        if not self.is_discrete:
+            return np.asarray(np.all(self.poles(zeta).real < 0, axis=-1))
+        a, _, _, c, d = self.split(zeta)
+        return np.asarray(np.logical_and.reduce([np.all(abs(_roots(x)) < 1, axis=-1) for x in (a, c, d)]))
+
+    def _powers(self, omega: FloatArray) -> tuple[ComplexArray, ComplexArray]:
+        numerator, denominator = np.arange(self.n_b + 1)[:, None], np.arange(self.n_a + 1)[:, None]
+        if self.sample_time is not None:
+            q = np.exp(-1j * omega * self.sample_time)
+            return q ** (self.n_k + numerator), q**denominator
+        x = 1j * omega / self.frequency_scale
+        return x ** numerator[::-1], x ** denominator[::-1]
+
+    def _noise_powers(self, omega: FloatArray, order: int) -> ComplexArray:
+        q = np.exp(-1j * omega * (self.sample_time or 0.0))
+        return np.asarray(q ** np.arange(order + 1)[:, None])
+
+    def _delay_factor(self, tau: FloatArray, omega: FloatArray) -> ComplexArray:
+        return np.exp(-1j * omega * tau.sum(axis=-1, keepdims=True))
+
+
+def _monic(coefficients: FloatArray, powers: ComplexArray) -> ComplexArray:
+    return powers[0] + coefficients @ powers[1:]
+
+
+def _roots(coefficients: FloatArray) -> ComplexArray:
+    order = coefficients.shape[-1]
+    if order == 0:
+        return np.zeros(coefficients.shape, dtype=np.complex128)
+    companion = np.zeros((*coefficients.shape, order))
+    companion[..., 0, :] = -coefficients
+    companion[..., np.arange(1, order), np.arange(order - 1)] = 1.0
+    return np.asarray(np.linalg.eigvals(companion), dtype=np.complex128)
+
+
+@dataclass(frozen=True, eq=False)
+class LocalModel:
+    """A model at one operating point: ζ (n,), its covariance P_ζ (n, n) and the variance σ_e² of e."""
+
+    structure: RationalStructure
+    operating_point: OperatingPoint
+    zeta: FloatArray
+    covariance: FloatArray
+    noise_variance: float
+
+
+@dataclass(frozen=True, eq=False)
+class LpvModel:
+    """A parameter-varying model ζ(p) = T(p) θ: θ (k,), its covariance P_θ (k, k) and the variance σ_e² of e."""
+
+    structure: RationalStructure
+    dependence: ParameterDependence
+    theta: FloatArray
+    covariance: FloatArray
+    noise_variance: float
+
+    def __post_init__(self) -> None:
+        n, k = self.structure.size, self.dependence.size
+        if len(self.dependence.bases) != n:
+            raise ShapeError(f"{len(self.dependence.bases)} bases were given for {n} coefficients", "basis")
+        if np.shape(self.theta) != (k,):
+            raise ShapeError(f"θ has shape {np.shape(self.theta)}, this model has {k} parameters", "theta")
+        if np.shape(self.covariance) != (k, k):
+            raise ShapeError(f"the covariance has shape {np.shape(self.covariance)}, it must be {(k, k)}", "covariance")
+
+    @cached_property
+    def plant_size(self) -> int:
+        """k_G, the number of entries of θ that belong to G; they come first."""
+        return sum(self.dependence.sizes[: self.structure.n_plant])
+
+    @property
+    def parameter_names(self) -> tuple[str, ...]:
+        """A name for each entry of θ."""
+        return self.dependence.parameter_names(self.structure.coefficient_names)
+
+    def coefficients(self, points: ArrayLike) -> FloatArray:
+        """ζ(p) at the operating points (M, s), as (M, n)."""
+        return self.dependence.matrix(points) @ self.theta
+
+    def frequency_response(self, points: ArrayLike, omega: FloatArray) -> ComplexArray:
+        """G(p, ω) at the operating points (M, s) and ω (F,) in rad/s, as (M, F)."""
+        return self.structure.plant_response(self.coefficients(points), omega)
+
+    def response_covariance(self, points: ArrayLike, omega: FloatArray) -> FloatArray:
+        """Covariance of (Re G, Im G) at the operating points (M, s) and ω (F,), as (M, F, 2, 2), to first order in P_θ."""
+        transfer = self.dependence.matrix(points)
+        gradient = self.structure.plant_gradient(transfer @ self.theta, omega)
+        sensitivity = np.einsum("mnf,mnk->mfk", gradient, transfer[:, : self.structure.n_plant, :])
+        parts = np.stack([sensitivity.real, sensitivity.imag], axis=-2)
+        return np.asarray(parts @ self.covariance @ np.swapaxes(parts, -1, -2))
+
+    def poles(self, points: ArrayLike) -> ComplexArray:
+        """Poles of G at the operating points (M, s), as (M, n_a)."""
+        return self.structure.poles(self.coefficients(points))

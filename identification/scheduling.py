@@ -1,0 +1,154 @@
+"""Scheduling variables, and how the coefficients of a model depend on them: ζ(p) = T(p) θ [Ghosh2018, (2), (3)]."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import product
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from identification.arrays import FloatArray, IntArray, finite_floats
+from identification.errors import RangeError, ShapeError, TooFewOperatingPointsError
+
+
+@dataclass(frozen=True)
+class SchedulingVariable:
+    """A quantity that the dynamics depend on and that can be held still: its name, unit and range."""
+
+    name: str
+    unit: str
+    minimum: float
+    maximum: float
+
+    def __post_init__(self) -> None:
+        if not (np.isfinite([self.minimum, self.maximum]).all() and self.minimum < self.maximum):
+            raise RangeError(
+                f"{self.name}: the minimum {self.minimum} must lie below the maximum {self.maximum}", "maximum"
+            )
+
+
+class OneVariableBasis(Protocol):
+    """Functions of one scheduling variable: what the plug-ins of `identification.bases` are."""
+
+    @property
+    def size(self) -> int:
+        """Number of functions."""
+
+    def evaluate(self, p: FloatArray, minimum: float, maximum: float) -> FloatArray:
+        """The functions at p (M,), as (M, size)."""
+
+
+@dataclass(frozen=True)
+class ProductBasis:
+    """Products of one-variable functions, f_j(p) = Π_s f_{j_s}(p_s).
+
+    With `total_degree` None all combinations are taken (tensor product); otherwise those with Σ_s j_s ≤ total_degree.
+    """
+
+    factors: tuple[OneVariableBasis, ...]
+    total_degree: int | None = None
+
+    @cached_property
+    def _combinations(self) -> IntArray:
+        every = product(*(range(factor.size) for factor in self.factors))
+        kept = [j for j in every if self.total_degree is None or sum(j) <= self.total_degree]
+        return np.array(kept, dtype=np.int64).reshape(len(kept), len(self.factors))
+
+    @property
+    def size(self) -> int:
+        """Number of functions."""
+        return len(self._combinations)
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """One label a function: its index in each factor."""
+        return tuple(",".join(map(str, j)) for j in self._combinations)
+
+    def evaluate(self, points: FloatArray, variables: Sequence[SchedulingVariable]) -> FloatArray:
+        """The functions at the operating points (M, s), as (M, size)."""
+        result = np.ones((len(points), self.size))
+        for s, (factor, variable) in enumerate(zip(self.factors, variables, strict=True)):
+            result *= factor.evaluate(points[:, s], variable.minimum, variable.maximum)[:, self._combinations[:, s]]
+        return result
+
+
+@dataclass(frozen=True)
+class ParameterDependence:
+    """How n coefficients depend on s scheduling variables; each coefficient may have its own basis.
+
+        ζ_i(p) = Σ_j θ_{i,j} f_{i,j}(p),   ζ(p) = T(p) θ,   T(p): n × k,   k = Σ_i size_i      [Ghosh2018, (2), (3)]
+
+    θ is ordered coefficient by coefficient: (θ_{1,0}, θ_{1,1}, …, θ_{n,·}).
+    """
+
+    variables: tuple[SchedulingVariable, ...]
+    bases: tuple[ProductBasis, ...]
+
+    def __post_init__(self) -> None:
+        for basis in self.bases:
+            if len(basis.factors) != len(self.variables):
+                raise ShapeError(
+                    f"a basis has {len(basis.factors)} factors for {len(self.variables)} scheduling variables;"
+                    " give one factor per variable",
+                    "basis",
+                )
+
+    @property
+    def size(self) -> int:
+        """k, the number of entries of θ."""
+        return sum(self.sizes)
+
+    @property
+    def sizes(self) -> tuple[int, ...]:
+        """Number of basis functions of each coefficient, (n,)."""
+        return tuple(basis.size for basis in self.bases)
+
+    def parameter_names(self, coefficient_names: Sequence[str]) -> tuple[str, ...]:
+        """A name for each entry of θ, such as a1[0], a1[1], b0[0]."""
+        pairs = zip(coefficient_names, self.bases, strict=True)
+        return tuple(f"{name}[{label}]" for name, basis in pairs for label in basis.labels)
+
+    def points(self, points: ArrayLike) -> FloatArray:
+        """Operating points as (M, s); raises ShapeError or RangeError when they do not fit the variables."""
+        array = finite_floats(points, "operating_points")
+        if array.ndim != 2 or array.shape[1] != len(self.variables):
+            raise ShapeError(
+                f"operating points have shape {array.shape}; give M rows of {len(self.variables)} values",
+                "operating_points",
+            )
+        for s, variable in enumerate(self.variables):
+            slack = 1e-9 * (variable.maximum - variable.minimum)
+            outside = (array[:, s] < variable.minimum - slack) | (array[:, s] > variable.maximum + slack)
+            if outside.any():
+                raise RangeError(
+                    f"{variable.name} = {array[outside, s][0]:g} {variable.unit} lies outside its range"
+                    f" [{variable.minimum:g}, {variable.maximum:g}]; move the operating point or widen the range",
+                    "operating_points",
+                )
+        return array
+
+    def matrix(self, points: ArrayLike) -> FloatArray:
+        """T(p) at the operating points (M, s), as (M, n, k)."""
+        p = self.points(points)
+        blocks = np.zeros((len(p), len(self.bases), self.size))
+        values = {basis: basis.evaluate(p, self.variables) for basis in dict.fromkeys(self.bases)}
+        start = 0
+        for i, basis in enumerate(self.bases):
+            blocks[:, i, start : start + basis.size] = values[basis]
+            start += basis.size
+        return blocks
+
+    def require_identifiable(self, points: ArrayLike) -> None:
+        """Raises TooFewOperatingPointsError unless the stacked T(p_m) has full column rank [Ghosh2018, Remark 2]."""
+        distinct = np.unique(self.points(points), axis=0)
+        for basis in dict.fromkeys(self.bases):
+            values = basis.evaluate(distinct, self.variables)
+            norms = np.linalg.norm(values, axis=0)
+            rank = np.linalg.matrix_rank(values / np.where(norms > 0, norms, 1.0))
+            if rank < basis.size:
+                placed = " (enough points, but placed so that some basis functions cannot be told apart)"
+                raise TooFewOperatingPointsError(
+                    max(self.sizes), len(distinct), placed if len(distinct) >= basis.size else ""
+                )
