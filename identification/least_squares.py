@@ -27,7 +27,7 @@ class LeastSquaresSolution:
 
     @property
     def covariance(self) -> FloatArray:
-        """(JᵀJ)⁻¹, the covariance of x where r has unit variance; infinite variances where J has no full column rank."""
+        """(JᵀJ)⁻¹, the covariance of x where r has unit variance; infinite where J has no full column rank."""
         scale, factor = _scaled_factor(self.jacobian)
         if _is_singular(factor):
             return np.full((len(self.x), len(self.x)), np.inf)
@@ -42,7 +42,7 @@ def levenberg_marquardt(
     max_iterations: int = 100,
     tolerance: float = 1e-9,
 ) -> LeastSquaresSolution:
-    """Minimise ‖r(x)‖² where `evaluate(x)` gives r (R,) and J = ∂r/∂x (R, n); steps out of the feasible region are refused.
+    """Minimise ‖r(x)‖² where `evaluate(x)` gives r (R,) and J = ∂r/∂x (R, n), never leaving the feasible region.
 
         (JᵀJ + μ diag JᵀJ) Δ = −Jᵀ r,   stop when the predicted decrease ‖Qᵀr‖² is below `tolerance`² ‖r‖² or rounding
 
@@ -51,8 +51,9 @@ def levenberg_marquardt(
     """
     x = start
     residual, jacobian = evaluate(x)
-    damping, status = 1e-3, "not_converged"
-    for iteration in range(max_iterations):
+    damping, status, iterations = 1e-3, "not_converged", 0
+    while iterations < max_iterations:
+        iterations += 1
         attainable = _newton_step(residual, jacobian, 0.0)[1]
         rounding = 1e-26 * float(np.sum((jacobian @ x) ** 2))
         if attainable <= max(tolerance**2 * float(residual @ residual), rounding):
@@ -63,7 +64,7 @@ def levenberg_marquardt(
             status = "converged" if attainable <= 1e-6 * (residual @ residual) else "not_converged"
             break
         x, residual, jacobian, damping = trial
-    return LeastSquaresSolution(x, residual, jacobian, _outcome(status, jacobian, iteration + 1))
+    return LeastSquaresSolution(x, residual, jacobian, _outcome(status, jacobian, iterations))
 
 
 def _accepted(
@@ -106,7 +107,7 @@ def _scaled_factor(matrix: FloatArray) -> tuple[FloatArray, FloatArray]:
     scaled = matrix / scale
     if len(scaled) < columns:
         scaled = np.vstack([scaled, np.zeros((columns - len(scaled), columns))])
-    return scale, np.linalg.qr(scaled, mode="r")
+    return scale, np.asarray(np.linalg.qr(scaled, mode="r"))
 
 
 def _is_singular(factor: FloatArray) -> bool:

@@ -1,4 +1,4 @@
-"""The residuals whose sum of squares every maximum-likelihood estimator here minimises, with their exact derivatives."""
+"""The residuals whose sum of squares the maximum-likelihood estimators minimise, with their exact derivatives."""
 
 import numpy as np
 from scipy.signal import lfilter

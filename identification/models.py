@@ -132,18 +132,18 @@ class RationalStructure:
             q = np.exp(-1j * omega * self.sample_time)
             return q ** (self.n_k + numerator), q**denominator
         x = 1j * omega / self.frequency_scale
-        return x ** numerator[::-1], x ** denominator[::-1]
+        return np.asarray(x ** numerator[::-1]), np.asarray(x ** denominator[::-1])
 
     def _noise_powers(self, omega: FloatArray, order: int) -> ComplexArray:
         q = np.exp(-1j * omega * (self.sample_time or 0.0))
         return np.asarray(q ** np.arange(order + 1)[:, None])
 
     def _delay_factor(self, tau: FloatArray, omega: FloatArray) -> ComplexArray:
-        return np.exp(-1j * omega * tau.sum(axis=-1, keepdims=True))
+        return np.asarray(np.exp(-1j * omega * tau.sum(axis=-1, keepdims=True)))
 
 
 def _monic(coefficients: FloatArray, powers: ComplexArray) -> ComplexArray:
-    return powers[0] + coefficients @ powers[1:]
+    return np.asarray(powers[0] + coefficients @ powers[1:])
 
 
 def _roots(coefficients: FloatArray) -> ComplexArray:
@@ -205,7 +205,7 @@ class LpvModel:
         return self.structure.plant_response(self.coefficients(points), omega)
 
     def response_covariance(self, points: ArrayLike, omega: FloatArray) -> FloatArray:
-        """Covariance of (Re G, Im G) at the operating points (M, s) and ω (F,), as (M, F, 2, 2), to first order in P_θ."""
+        """Covariance of (Re G, Im G) at the points (M, s) and ω (F,), as (M, F, 2, 2), to first order in P_θ."""
         transfer = self.dependence.matrix(points)
         gradient = self.structure.plant_gradient(transfer @ self.theta, omega)
         sensitivity = np.einsum("mnf,mnk->mfk", gradient, transfer[:, : self.structure.n_plant, :])

@@ -103,7 +103,7 @@ def _check_frequencies(frequencies: FloatArray, sample_time: float | None) -> No
         raise RangeError(f"the sample time is {sample_time}; it must be positive", "sample_time")
     if sample_time is not None and frequencies.max() > np.pi / sample_time * (1 + 1e-9):
         raise RangeError(
-            f"the frequency {frequencies.max():.6g} rad/s lies above the Nyquist frequency {np.pi / sample_time:.6g} rad/s;"
-            " remove it or correct the sample time",
+            f"the frequency {frequencies.max():.6g} rad/s lies above the Nyquist frequency"
+            f" {np.pi / sample_time:.6g} rad/s; remove it or correct the sample time",
             "frequencies",
         )
