@@ -1,7 +1,6 @@
 """What all tests share: one thread per process for linear algebra, and a real server process on loopback."""
 
 import os
-
 from collections.abc import Iterator
 from pathlib import Path
 
