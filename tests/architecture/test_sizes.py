@@ -1,4 +1,4 @@
-"""Small rooms: files of 150 lines in the middle and 400 at most; functions of 10 in the middle, nine in ten up to 35."""
+"""Small rooms: files of 150 lines in the middle, 400 at most; functions of 10 in the middle, nine in ten up to 35."""
 
 from statistics import median, quantiles
 
