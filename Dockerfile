@@ -19,7 +19,7 @@ FROM debian:bookworm-slim
 RUN apt-get update \
     && apt-get install -y --no-install-recommends python3 \
     && rm -rf /var/lib/apt/lists/* \
-    && useradd --system --uid 10001 --create-home --shell /usr/sbin/nologin lpv-oed \
+    && useradd --uid 10001 --create-home --shell /usr/sbin/nologin lpv-oed \
     && install -d -o lpv-oed -g lpv-oed /data
 COPY --from=build /opt/lpv-oed /opt/lpv-oed
 ENV PATH=/opt/lpv-oed/bin:$PATH \
