@@ -52,13 +52,13 @@ def prediction_errors(
     error = lfilter(d, c, disturbance)
     through = lfilter(d, np.convolve(c, a), np.stack([response, u, pulse]))
     columns = [
-        _delayed(through[0], 1, structure.n_a),
-        -_delayed(through[1], structure.n_k, structure.n_b + 1),
-        -_delayed(lfilter(one, c, error), 1, structure.n_c),
-        _delayed(lfilter(one, c, disturbance), 1, structure.n_d),
+        delayed(through[0], 1, structure.n_a),
+        -delayed(through[1], structure.n_k, structure.n_b + 1),
+        -delayed(lfilter(one, c, error), 1, structure.n_c),
+        delayed(lfilter(one, c, disturbance), 1, structure.n_d),
     ]
     if transient is not None:
-        columns.append(-_delayed(through[2], 0, len(transient)))
+        columns.append(-delayed(through[2], 0, len(transient)))
     return np.asarray(error), np.concatenate(columns, axis=1)
 
 
@@ -93,7 +93,7 @@ def require_same_sampling(structure: RationalStructure, data: Measurement) -> No
         )
 
 
-def _delayed(signal: FloatArray, first: int, count: int) -> FloatArray:
+def delayed(signal: FloatArray, first: int, count: int) -> FloatArray:
     """The signal delayed by first … first + count − 1 samples, as the columns of an (N, count) array."""
     columns = np.zeros((len(signal), count))
     for i in range(count):
