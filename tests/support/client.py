@@ -1,0 +1,44 @@
+"""The Python client of the service, generated from openapi/openapi.json the way a user would, and imported."""
+
+import importlib
+import subprocess
+import sys
+from pathlib import Path
+from types import ModuleType
+
+from tests.support.sources import ROOT
+
+OPENAPI = ROOT / "openapi" / "openapi.json"
+PACKAGE = "lpv_oed_client"
+CONFIGURATION = f"package_name_override: {PACKAGE}\nproject_name_override: {PACKAGE}\npost_hooks: []\n"
+
+
+class GenerationError(Exception):
+    """The generator failed, or left something of the document out."""
+
+
+def generate(document: Path, folder: Path) -> Path:
+    """The generated package below `folder`; GenerationError when the generator warns that it left something out."""
+    configuration = folder / "client.yml"
+    configuration.write_text(CONFIGURATION)
+    package = folder / PACKAGE
+    command = [sys.executable, "-m", "openapi_python_client", "generate", "--meta", "none", "--fail-on-warning"]
+    command += ["--path", str(document), "--output-path", str(package), "--config", str(configuration)]
+    result = subprocess.run(command, capture_output=True, text=True, check=False, stdin=subprocess.DEVNULL)
+    if result.returncode:
+        raise GenerationError(f"{result.stdout}\n{result.stderr}")
+    return package
+
+
+def load(package: Path) -> ModuleType:
+    """Import a generated package, which lies outside of the import path."""
+    sys.path.insert(0, str(package.parent))
+    try:
+        return importlib.import_module(package.name)
+    finally:
+        sys.path.remove(str(package.parent))
+
+
+def operation(package: ModuleType, tag: str, name: str) -> ModuleType:
+    """The module of one operation, with `sync_detailed` and the other ways to call it; names in snake case."""
+    return importlib.import_module(f"{package.__name__}.api.{tag}.{name}")
