@@ -1,0 +1,1 @@
+"""Documents to objects of identification and oed, and back."""

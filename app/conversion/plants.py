@@ -1,0 +1,122 @@
+"""Plants and models: documents to structures, dependences and parameter-varying models."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from app.schemas.plants import (
+    CoefficientBasis,
+    DiscreteTimeStructure,
+    PlantRequest,
+    ProductBasisDocument,
+    SchedulingVariableDocument,
+    Structure,
+)
+from identification.errors import RangeError, ShapeError
+from identification.models import LpvModel, RationalStructure
+from identification.scheduling import ParameterDependence, ProductBasis, SchedulingVariable
+
+MAX_PARAMETERS = 200
+MAX_BASIS_SIZE = 100
+
+
+def rational_structure(document: Structure) -> RationalStructure:
+    """The structure of a document."""
+    if isinstance(document, DiscreteTimeStructure):
+        return RationalStructure(
+            n_a=document.na,
+            n_b=document.nb,
+            n_k=document.nk,
+            n_c=document.nc,
+            n_d=document.nd,
+            sample_time=document.sample_time_seconds,
+            delay=document.delay,
+        )
+    return RationalStructure(
+        n_a=document.na,
+        n_b=document.nb,
+        frequency_scale=document.frequency_scale_rad_per_second,
+        delay=document.delay,
+    )
+
+
+def product_basis(document: ProductBasisDocument) -> ProductBasis:
+    """The basis of a document; raises RangeError when it is empty or too large."""
+    factors = tuple(factor.build() for factor in document.factors)
+    if np.prod([float(factor.size) for factor in factors]) > 100 * MAX_BASIS_SIZE:
+        raise RangeError(f"the basis has more than {MAX_BASIS_SIZE} functions; choose lower degrees", "basis")
+    basis = ProductBasis(factors, document.total_degree)
+    if basis.size > MAX_BASIS_SIZE:
+        raise RangeError(f"the basis has {basis.size} functions, at most {MAX_BASIS_SIZE} are allowed", "basis")
+    return basis
+
+
+def parameter_dependence(
+    structure: RationalStructure,
+    variables: Sequence[SchedulingVariableDocument],
+    basis: ProductBasisDocument,
+    exceptions: Sequence[CoefficientBasis],
+) -> ParameterDependence:
+    """How the coefficients of a structure depend on the scheduling variables.
+
+    Raises RangeError for a coefficient that the structure does not have or that is named twice, and for too many
+    parameters; ShapeError when a basis has not one factor for each variable.
+    """
+    own = {item.coefficient: product_basis(item.basis) for item in exceptions}
+    unknown = sorted(set(own) - set(structure.coefficient_names))
+    if unknown or len(own) < len(exceptions):
+        raise RangeError(
+            f"each coefficient is named once, and is one of {', '.join(structure.coefficient_names)}"
+            + (f"; {unknown[0]} is not" if unknown else ""),
+            "coefficient_bases",
+        )
+    common = product_basis(basis)
+    dependence = ParameterDependence(
+        tuple(SchedulingVariable(v.name, v.unit, v.minimum, v.maximum) for v in variables),
+        tuple(own.get(name, common) for name in structure.coefficient_names),
+    )
+    if dependence.size > MAX_PARAMETERS:
+        raise RangeError(f"the model has {dependence.size} parameters, at most {MAX_PARAMETERS} are allowed", "basis")
+    _evaluate_at_both_ends(dependence)
+    return dependence
+
+
+def _evaluate_at_both_ends(dependence: ParameterDependence) -> None:
+    """Bases check their knots against the range when they are evaluated."""
+    ends = [[v.minimum for v in dependence.variables], [v.maximum for v in dependence.variables]]
+    if not np.isfinite(dependence.matrix(ends)).all():
+        raise RangeError("a basis function overflows inside the range; choose a lower degree or another unit", "basis")
+
+
+def structure_and_dependence(plant: PlantRequest) -> tuple[RationalStructure, ParameterDependence]:
+    """The structure of a plant and how it depends on the scheduling variables."""
+    structure = rational_structure(plant.structure)
+    names = [variable.name for variable in plant.scheduling_variables]
+    if len(set(names)) < len(names):
+        raise RangeError("two scheduling variables have the same name", "scheduling_variables")
+    return structure, parameter_dependence(
+        structure, plant.scheduling_variables, plant.basis, plant.coefficient_bases
+    )
+
+
+def lpv_model(
+    structure: RationalStructure,
+    dependence: ParameterDependence,
+    theta: Sequence[float],
+    covariance: Sequence[Sequence[float]] | None,
+    noise_variance: float,
+) -> LpvModel:
+    """The model of given parameters; without a covariance it is taken as exactly known (zero covariance)."""
+    k = dependence.size
+    if covariance is None:
+        matrix = np.zeros((k, k))
+    elif len({len(row) for row in covariance}) > 1:
+        raise ShapeError("the rows of the covariance differ in length", "covariance")
+    else:
+        matrix = np.array(covariance, dtype=float)
+    return LpvModel(structure, dependence, np.array(theta, dtype=float), matrix, noise_variance)
+
+
+def require_operating_point(dependence: ParameterDependence, point: Sequence[float]) -> None:
+    """Raises ShapeError or RangeError when a point does not fit the scheduling variables."""
+    dependence.points([list(point)])

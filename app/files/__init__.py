@@ -1,0 +1,1 @@
+"""Files of measurements and signals: readers that trust nothing, and writers."""

@@ -1,0 +1,140 @@
+"""Tables to measurements: which columns there are decides what was measured."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.files import csv_file, mat_file, npz_file
+from app.files.table import FileError, Table
+from identification.arrays import ComplexArray, FloatArray
+from identification.signals import FrequencyResponse, Measurement, OperatingPoint, TimeRecord
+
+SAMPLE_TIME_TOLERANCE = 1e-3
+
+
+@dataclass(frozen=True)
+class Statements:
+    """What is stated beside the file; it goes before what the file says."""
+
+    operating_point: OperatingPoint
+    sample_time: float | None = None
+    period: int | None = None
+    group: str = ""
+
+
+def read_measurement(content: bytes, file_format: str, stated: Statements) -> Measurement:
+    """The measurement in a file of format csv, npz or mat; raises MisuseError."""
+    readers: dict[str, Callable[[], Table]] = {
+        "csv": lambda: csv_file.read(content),
+        "npz": lambda: npz_file.read(content),
+        "mat": lambda: mat_file.read(content, stated.group),
+    }
+    return measurement(readers[file_format](), stated)
+
+
+def measurement(table: Table, stated: Statements) -> Measurement:
+    """A time record when there are input and output, a frequency response when there are frequencies."""
+    for name, values in table.items():
+        bad = np.flatnonzero(~np.isfinite(np.atleast_1d(values)))
+        if bad.size:
+            raise FileError(f"the {name} has a value at position {bad[0]} that is not a finite number")
+    if "input" in table and "output" in table:
+        return _time_record(table, stated)
+    if "frequencies" in table or "hertz" in table:
+        return _frequency_response(table, stated)
+    raise FileError(
+        f"the file has {', '.join(table)}; a time record needs input and output, a frequency response needs"
+        " frequencies and response (or its real and imaginary parts)"
+    )
+
+
+def _time_record(table: Table, stated: Statements) -> TimeRecord:
+    period = stated.period if stated.period is not None else _whole_number(table, "period")
+    return TimeRecord(
+        input=_real(table, "input"),
+        output=_real(table, "output"),
+        sample_time=_sample_time(table, stated),
+        operating_point=stated.operating_point,
+        period=period,
+    )
+
+
+def _sample_time(table: Table, stated: Statements) -> float:
+    found = _scalar(table, "sample_time")
+    if "time" in table:
+        found = _uniform_step(_real(table, "time"))
+    if stated.sample_time is None:
+        if found is None:
+            raise FileError("the file has no time; state sampleTimeSeconds")
+        return found
+    if found is not None and abs(found / stated.sample_time - 1) > SAMPLE_TIME_TOLERANCE:
+        raise FileError(f"the file was sampled every {found:g} s, but sampleTimeSeconds is {stated.sample_time:g}")
+    return stated.sample_time
+
+
+def _uniform_step(time: FloatArray) -> float:
+    steps = np.diff(time)
+    if len(steps) == 0:
+        raise FileError("a record needs at least two samples")
+    step = (time[-1] - time[0]) / len(steps)
+    if not step > 0 or np.max(np.abs(steps - step)) > 0.01 * step:
+        raise FileError(
+            f"the sample time changes between {steps.min():g} and {steps.max():g} s within the record; resample it"
+        )
+    return float(step)
+
+
+def _frequency_response(table: Table, stated: Statements) -> FrequencyResponse:
+    omega = _real(table, "frequencies") if "frequencies" in table else 2 * np.pi * _real(table, "hertz")
+    found = _scalar(table, "sample_time")
+    return FrequencyResponse(
+        frequencies=omega,
+        response=_response(table),
+        operating_point=stated.operating_point,
+        sample_time=stated.sample_time if stated.sample_time is not None else found,
+        variance=_real(table, "variance") if "variance" in table else None,
+        variance_degrees_of_freedom=_scalar(table, "degrees_of_freedom"),
+    )
+
+
+def _response(table: Table) -> ComplexArray:
+    if "response" in table:
+        return np.atleast_1d(table["response"]).astype(np.complex128)
+    if "real" in table and "imaginary" in table:
+        real, imaginary = _real(table, "real"), _real(table, "imaginary")
+        if real.shape != imaginary.shape:
+            raise FileError(f"there are {len(real)} real and {len(imaginary)} imaginary parts")
+        return np.asarray(real + 1j * imaginary)
+    raise FileError("the file has frequencies but no response; name it response, or responseRe and responseIm")
+
+
+def _real(table: Table, name: str) -> FloatArray:
+    values = np.atleast_1d(table[name])
+    if np.iscomplexobj(values):
+        raise FileError(f"the {name} is complex")
+    return values.astype(np.float64)
+
+
+def _scalar(table: Table, name: str) -> float | None:
+    if name not in table:
+        return None
+    values = _real(table, name)
+    if len(values) == 0 or np.any(values != values[0]) or values[0] <= 0:
+        raise FileError(f"the {name.replace('_', ' ')} in the file is not one positive number")
+    return float(values[0])
+
+
+def _whole_number(table: Table, name: str) -> int | None:
+    value = _scalar(table, name)
+    if value is not None and value != int(value):
+        raise FileError(f"the {name} in the file is no whole number")
+    return None if value is None else int(value)
+
+
+def measurement_arrays(data: Measurement) -> Table:
+    """The arrays that are kept of a measurement."""
+    if isinstance(data, TimeRecord):
+        return {"input": data.input, "output": data.output}
+    arrays: Table = {"frequenciesRadPerSecond": data.frequencies, "response": data.response}
+    return arrays if data.variance is None else {**arrays, "variance": data.variance}

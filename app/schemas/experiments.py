@@ -1,0 +1,126 @@
+"""Experiments: what was measured at one operating point, and what was understood of it."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field, RootModel
+
+from app.arrays import ComplexVector
+from app.schemas.common import CamelModel, Double, Integer, Timestamp
+from app.schemas.plants import LongText, OperatingPoint, Positive, Text
+
+Identifier = Annotated[str, Field(min_length=1, max_length=64)]
+Values = list[Double]
+
+
+class ExperimentFields(CamelModel):
+    """What every experiment states."""
+
+    plant_id: Identifier = Field(description="the plant that was measured")
+    name: Text = ""
+    description: LongText = ""
+    operating_point: OperatingPoint = Field(description="one value a scheduling variable, constant while measuring")
+    design_id: Identifier | None = Field(default=None, description="the design that this experiment carries out")
+
+
+class TimeRecordRequest(ExperimentFields):
+    """Input and output over time."""
+
+    kind: Literal["timeRecord"]
+    sample_time_seconds: Positive
+    input: Values = Field(description="input, one value a sample, in the unit of the plant's input")
+    output: Values = Field(description="output, as many values as the input")
+    period_samples: Annotated[Integer, Field(ge=2)] | None = Field(
+        default=None, description="samples in one period of a periodic input; null when it is not or unknown"
+    )
+
+
+class FrequencyResponseRequest(ExperimentFields):
+    """A measured frequency response."""
+
+    kind: Literal["frequencyResponse"]
+    sample_time_seconds: Positive | None = Field(default=None, description="null for continuous time")
+    frequencies_rad_per_second: Values = Field(description="distinct frequencies, zero or more")
+    response: ComplexVector = Field(description="output over input, one value a frequency")
+    variance: Values | None = Field(
+        default=None, description="E|noise|² of each value (real and imaginary part half of it each); null if unknown"
+    )
+    variance_degrees_of_freedom: Positive | None = Field(
+        default=None, description="degrees of freedom of estimated variances; null when they are known exactly"
+    )
+
+
+class ExperimentRequest(
+    RootModel[Annotated[TimeRecordRequest | FrequencyResponseRequest, Field(discriminator="kind")]]
+):
+    """A time record or a frequency response, told apart by `kind`."""
+
+
+class SignalUnderstood(CamelModel):
+    """What was understood of the input or the output."""
+
+    rms: Double | None = Field(description="root mean square")
+    minimum: Double | None
+    maximum: Double | None
+    notes: list[str] = Field(default_factory=list, description="saturation, trend, and what else was seen")
+
+
+class Understanding(CamelModel):
+    """What was understood of a measurement."""
+
+    samples: Integer | None = Field(description="samples of a time record")
+    duration_seconds: Double | None = Field(description="length of a time record")
+    period_samples: Integer | None = Field(description="samples in one period, stated or found; null if not periodic")
+    periods: Integer | None = Field(description="whole periods in the record")
+    frequency_count: Integer = Field(description="frequencies that are excited, or at which the response is given")
+    minimum_frequency_rad_per_second: Double | None
+    maximum_frequency_rad_per_second: Double | None
+    excited_frequencies_rad_per_second: Values | None = Field(description="excited lines of a periodic input")
+    noise_level: Double | None = Field(description="standard deviation of the output's noise; null if not determined")
+    signal_to_noise_decibel: Double | None
+    input: SignalUnderstood | None
+    output: SignalUnderstood | None
+    warnings: list[str] = Field(description="what may spoil an identification")
+
+
+class Experiment(ExperimentFields):
+    """An experiment; its arrays are found under `/data` and `/file`."""
+
+    id: str
+    created_at: Timestamp
+    job_id: str | None
+    software_version: str
+    kind: Literal["timeRecord", "frequencyResponse"]
+    sample_time_seconds: Double | None = Field(description="null for a frequency response in continuous time")
+    variance_known: bool = Field(description="whether variances came with the frequency response")
+    source: Literal["json", "csv", "npz", "mat"] = Field(description="how the data came")
+    file_name: str | None = Field(default=None, description="name of the uploaded file")
+    understood: Understanding
+
+
+class ExperimentList(CamelModel):
+    """A page of experiments."""
+
+    items: list[Experiment]
+    next_cursor: str | None = Field(default=None, description="give as `cursor` for the next page")
+
+
+class TimeRecordData(CamelModel):
+    """The samples of a time record."""
+
+    kind: Literal["timeRecord"]
+    sample_time_seconds: Double
+    input: Values
+    output: Values
+
+
+class FrequencyResponseData(CamelModel):
+    """The values of a frequency response."""
+
+    kind: Literal["frequencyResponse"]
+    frequencies_rad_per_second: Values
+    response: ComplexVector
+    variance: Values | None
+
+
+class ExperimentData(RootModel[Annotated[TimeRecordData | FrequencyResponseData, Field(discriminator="kind")]]):
+    """The arrays of an experiment."""

@@ -1,0 +1,109 @@
+"""Plants: what is measured and controlled, what the dynamics depend on, and the model structure meant for it."""
+
+from typing import TYPE_CHECKING, Annotated, Literal
+
+from pydantic import Field
+
+from app.schemas.common import CamelModel, Double, Integer, Timestamp
+from app.schemas.families import Basis
+from app.schemas.plug_ins import named_union
+
+Text = Annotated[str, Field(max_length=200)]
+Name = Annotated[str, Field(min_length=1, max_length=200)]
+LongText = Annotated[str, Field(max_length=10_000)]
+Order = Annotated[Integer, Field(ge=0, le=30)]
+Positive = Annotated[Double, Field(gt=0)]
+OperatingPoint = Annotated[list[Double], Field(min_length=1, max_length=10)]
+
+
+class SchedulingVariableDocument(CamelModel):
+    """A quantity that the dynamics depend on and that can be held still."""
+
+    name: Name = Field(description="what it is, e.g. speed")
+    unit: Text = Field(default="", description="unit of all its values")
+    minimum: Double = Field(description="lower end of the range that the model is for")
+    maximum: Double = Field(description="upper end of the range that the model is for")
+
+
+class SignalDescription(CamelModel):
+    """What the input or the output is."""
+
+    name: Name = Field(description="what it is, e.g. motor current")
+    unit: Text = Field(default="", description="its unit")
+
+
+class DiscreteTimeStructure(CamelModel):
+    """Orders of y = (B/A) u + (C/D) e in discrete time."""
+
+    time_domain: Literal["discrete"]
+    sample_time_seconds: Positive = Field(description="sample time of records and model")
+    na: Order = Field(description="order of A = 1 + a1 q + …, q the delay by one sample")
+    nb: Order = Field(description="order of B = q^nk (b0 + b1 q + … + b_nb q^nb)")
+    nk: Order = Field(default=0, description="samples of delay")
+    nc: Order = Field(default=0, description="order of C = 1 + c1 q + …")
+    nd: Order = Field(default=0, description="order of D = 1 + d1 q + …")
+    delay: bool = Field(default=False, description="estimate a further delay tau in seconds")
+
+
+class ContinuousTimeStructure(CamelModel):
+    """Orders of G = exp(−jωτ) B/A in continuous time, x = jω/frequencyScaleRadPerSecond."""
+
+    time_domain: Literal["continuous"]
+    na: Order = Field(description="order of A = x^na + a1 x^(na−1) + … + a_na")
+    nb: Order = Field(description="order of B = b0 x^nb + … + b_nb; it may exceed na")
+    delay: bool = Field(default=False, description="estimate a delay tau in seconds")
+    frequency_scale_rad_per_second: Positive = Field(
+        default=1.0, description="frequency that coefficients are scaled by; choose one in the middle of the data"
+    )
+
+
+class ProductBasisDocument(CamelModel):
+    """Products of basis functions, one factor for each scheduling variable."""
+
+    factors: Annotated[list[Basis], Field(min_length=1, max_length=10)] = Field(description="one a scheduling variable")
+    total_degree: Annotated[Integer, Field(ge=0)] | None = Field(
+        default=None, description="highest sum of indices that is kept; null keeps all products"
+    )
+
+
+class CoefficientBasis(CamelModel):
+    """The basis of one coefficient, in place of the common one."""
+
+    coefficient: Name = Field(description="name of the coefficient, e.g. a1, b0, tau")
+    basis: ProductBasisDocument
+
+
+if TYPE_CHECKING:
+    Structure = DiscreteTimeStructure | ContinuousTimeStructure
+else:
+    Structure = named_union("Structure", (DiscreteTimeStructure, ContinuousTimeStructure), "time_domain")
+
+
+class PlantRequest(CamelModel):
+    """A plant to describe."""
+
+    name: Name
+    description: LongText = ""
+    scheduling_variables: Annotated[list[SchedulingVariableDocument], Field(min_length=1, max_length=10)]
+    input: SignalDescription
+    output: SignalDescription
+    structure: Structure = Field(description="model structure")
+    basis: ProductBasisDocument = Field(description="how all coefficients depend on the scheduling variables")
+    coefficient_bases: list[CoefficientBasis] = Field(default_factory=list, description="exceptions to `basis`")
+
+
+class Plant(PlantRequest):
+    """A plant, with what follows from its structure."""
+
+    id: str
+    created_at: Timestamp
+    software_version: str
+    parameter_names: list[str] = Field(description="names of the entries of theta, in order")
+    needed_operating_points: int = Field(description="least number of distinct operating points that determine theta")
+
+
+class PlantList(CamelModel):
+    """A page of plants."""
+
+    items: list[Plant]
+    next_cursor: str | None = Field(default=None, description="give as `cursor` for the next page")
