@@ -117,14 +117,14 @@ class RationalStructure:
     def poles(self, zeta: FloatArray) -> ComplexArray:
         """Poles of G for ζ (…, n), as (…, n_a): in the z-plane, or in rad/s in continuous time."""
         scale = 1.0 if self.is_discrete else self.frequency_scale
-        return scale * _roots(self.split(zeta)[0])
+        return scale * roots(self.split(zeta)[0])
 
     def stable(self, zeta: FloatArray) -> BoolArray:
         """Whether G is stable and H stable with a stable inverse, for ζ (…, n), as (…,)."""
         if not self.is_discrete:
             return np.asarray(np.all(self.poles(zeta).real < 0, axis=-1))
         a, _, _, c, d = self.split(zeta)
-        return np.asarray(np.logical_and.reduce([np.all(abs(_roots(x)) < 1, axis=-1) for x in (a, c, d)]))
+        return np.asarray(np.logical_and.reduce([np.all(abs(roots(x)) < 1, axis=-1) for x in (a, c, d)]))
 
     def _powers(self, omega: FloatArray) -> tuple[ComplexArray, ComplexArray]:
         numerator, denominator = np.arange(self.n_b + 1)[:, None], np.arange(self.n_a + 1)[:, None]
@@ -146,7 +146,8 @@ def _monic(coefficients: FloatArray, powers: ComplexArray) -> ComplexArray:
     return np.asarray(powers[0] + coefficients @ powers[1:])
 
 
-def _roots(coefficients: FloatArray) -> ComplexArray:
+def roots(coefficients: FloatArray) -> ComplexArray:
+    """Zeros of x^m + c_1 x^{m−1} + … + c_m for coefficients c (…, m), as (…, m)."""
     order = coefficients.shape[-1]
     if order == 0:
         return np.zeros(coefficients.shape, dtype=np.complex128)
