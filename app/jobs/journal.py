@@ -1,0 +1,129 @@
+"""The ledger of jobs as executors see it: claim, report, finish. Every change is one transaction.
+
+A run is known by the job and its attempt. Reports of a run that is no longer the present one (cancelled, or started
+again after a crash) change nothing, so nothing can be recorded twice.
+"""
+
+from collections.abc import Mapping
+from datetime import UTC, datetime
+from typing import Any
+
+from sqlalchemy import select
+from sqlalchemy.orm import Session
+
+from app.jobs import problems
+from app.jobs.hub import Hub
+from app.jobs.records import ClaimedJob
+from app.jobs.transitions import move, tell
+from app.store.database import Database
+from app.store.resources import Resource, add_resource
+from app.store.rows import JobRow
+
+Run = tuple[str, int]
+Progress = tuple[float, str]
+
+
+class Journal:
+    """Takes jobs from the ledger and writes down what became of them. Thread-safe."""
+
+    def __init__(self, database: Database, hub: Hub) -> None:
+        self._database = database
+        self._hub = hub
+
+    def recover(self, most_attempts: int) -> int:
+        """Queue again what was running when the server died; returns how many jobs. Only before any run."""
+        query = select(JobRow).where(JobRow.state == "running").order_by(JobRow.id)
+        with self._database.write() as session:
+            rows = session.scalars(query).all()
+            for row in rows:
+                _interrupted(session, row, most_attempts)
+        return len(rows)
+
+    def claim(self) -> ClaimedJob | None:
+        """Take the oldest queued job to run it, or None when there is none."""
+        queued = select(JobRow).where(JobRow.state == "queued").order_by(JobRow.id).limit(1)
+        with self._database.read() as session:
+            if session.scalars(queued).first() is None:
+                return None
+        with self._database.write() as session:
+            row = session.scalars(queued.with_for_update(skip_locked=True)).first()
+            if row is None:
+                return None
+            row.attempts += 1
+            row.message = "started"
+            move(session, row, "running")
+            claimed = ClaimedJob(row.id, row.kind, row.attempts, row.payload)
+        self._hub.notify()
+        return claimed
+
+    def is_running(self, run: Run) -> bool:
+        """Whether this is still the present run of its job."""
+        with self._database.read() as session:
+            return _present(session, run) is not None
+
+    def progress(self, reports: Mapping[Run, Progress]) -> None:
+        """Write down how far runs are."""
+        with self._database.write() as session:
+            for run, (fraction, message) in reports.items():
+                row = _present(session, run)
+                if row is not None:
+                    row.fraction, row.message = max(fraction, row.fraction), message
+                    tell(session, row, "progress")
+        self._hub.notify()
+
+    def succeed(self, run: Run, document: dict[str, Any], arrays: str | None) -> bool:
+        """Keep what a run made and finish its job, together; False when it is no longer the present run."""
+        with self._database.write() as session:
+            row = _present(session, run)
+            if row is not None:
+                add_resource(session, _resource(row, document, arrays))
+                row.fraction, row.message = 1.0, "done"
+                move(session, row, "succeeded")
+        self._hub.notify()
+        return row is not None
+
+    def fail(self, run: Run, problem: dict[str, Any]) -> bool:
+        """Finish the job of a run with a problem; False when it is no longer the present run."""
+        with self._database.write() as session:
+            row = _present(session, run)
+            if row is not None:
+                _fail(session, row, problem)
+        self._hub.notify()
+        return row is not None
+
+    def requeue(self, run: Run) -> None:
+        """Give a job back that could not be finished because the server stops."""
+        with self._database.write() as session:
+            row = _present(session, run)
+            if row is not None:
+                _requeue(session, row)
+        self._hub.notify()
+
+
+def _present(session: Session, run: Run) -> JobRow | None:
+    job_id, attempt = run
+    query = select(JobRow).where(JobRow.id == job_id, JobRow.state == "running", JobRow.attempts == attempt)
+    return session.scalars(query.with_for_update()).one_or_none()
+
+
+def _interrupted(session: Session, row: JobRow, most_attempts: int) -> None:
+    if row.attempts >= most_attempts:
+        _fail(session, row, problems.interrupted(row.attempts))
+    else:
+        _requeue(session, row)
+
+
+def _requeue(session: Session, row: JobRow) -> None:
+    row.fraction, row.message = 0.0, "waiting to be started again"
+    move(session, row, "queued", event="requeued")
+
+
+def _fail(session: Session, row: JobRow, problem: dict[str, Any]) -> None:
+    row.problem = problem
+    row.message = "failed"
+    move(session, row, "failed")
+
+
+def _resource(row: JobRow, document: dict[str, Any], arrays: str | None) -> Resource:
+    now = datetime.now(UTC)
+    return Resource(row.resource_id, row.resource_kind, row.plant_id, row.id, now, document, arrays)

@@ -1,0 +1,53 @@
+"""How a run can end, as data."""
+
+from dataclasses import dataclass
+from typing import Any
+
+
+@dataclass(frozen=True)
+class Succeeded:
+    """The task returned."""
+
+    document: dict[str, Any]
+    arrays: str | None
+
+
+@dataclass(frozen=True)
+class Refused:
+    """The task raised MisuseError: the request cannot be answered as it stands."""
+
+    message: str
+    field: str | None
+
+
+@dataclass(frozen=True)
+class OutOfMemory:
+    """The task reached the memory limit."""
+
+
+@dataclass(frozen=True)
+class Faulted:
+    """The task raised anything else."""
+
+    traceback: str
+
+
+@dataclass(frozen=True)
+class TimedOut:
+    """The child process was ended at the time limit."""
+
+
+@dataclass(frozen=True)
+class Crashed:
+    """The child process ended in the middle of the task; a negative code is a signal, None unknown."""
+
+    exit_code: int | None
+
+
+@dataclass(frozen=True)
+class Ended:
+    """The child process was ended on purpose: the job was cancelled, or the server stops."""
+
+
+TaskOutcome = Succeeded | Refused | OutOfMemory | Faulted
+Outcome = TaskOutcome | TimedOut | Crashed | Ended

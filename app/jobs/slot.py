@@ -1,0 +1,108 @@
+"""A thread that takes jobs from the journal, one at a time, and runs each in its child process."""
+
+import logging
+from collections.abc import Mapping
+from threading import Event, Thread
+
+from app.jobs import problems
+from app.jobs.child import Child
+from app.jobs.journal import Journal
+from app.jobs.outcomes import Crashed, Ended, Faulted, Outcome, OutOfMemory, Refused, Succeeded, TimedOut
+from app.jobs.records import ClaimedJob
+from app.settings import Settings
+
+logger = logging.getLogger(__name__)
+SECONDS_BETWEEN_LOOKS = 2.0
+SECONDS_AFTER_FAULT = 1.0
+
+
+class Slot:
+    """Room for one running job."""
+
+    def __init__(self, journal: Journal, kinds: Mapping[str, str], settings: Settings) -> None:
+        self._journal = journal
+        self._kinds = kinds
+        self._settings = settings
+        self.child = Child(settings)
+        self._awake = Event()
+        self._stopping = Event()
+        self._thread = Thread(target=self._loop, name="lpv-oed-job-slot", daemon=True)
+
+    def start(self) -> None:
+        self._thread.start()
+
+    def wake(self) -> None:
+        """Look for a job now."""
+        self._awake.set()
+
+    def stop(self) -> None:
+        """End the running job, which is queued again, and take no other."""
+        self._stopping.set()
+        self._awake.set()
+        self.child.end()
+
+    def join(self) -> None:
+        """Wait until the child process has ended."""
+        self._thread.join()
+
+    def _loop(self) -> None:
+        while not self._stopping.is_set():
+            self._awake.clear()
+            try:
+                found = self._run_next()
+            except Exception:
+                logger.exception("the ledger could not be reached; trying again")
+                self._stopping.wait(SECONDS_AFTER_FAULT)
+                continue
+            if not found:
+                self._awake.wait(SECONDS_BETWEEN_LOOKS)
+        self.child.close()
+
+    def _run_next(self) -> bool:
+        job = self._journal.claim()
+        if job is None:
+            return False
+        self._record(job, self._run(job))
+        return True
+
+    def _run(self, job: ClaimedJob) -> Outcome:
+        run = (job.id, job.attempt)
+        module = self._kinds.get(job.kind)
+        if module is None:
+            return Refused(f"this server does not know the job kind {job.kind!r}", None)
+        try:
+            return self.child.run(job, module, lambda: not self._stopping.is_set() and self._journal.is_running(run))
+        except Exception as error:
+            logger.exception("job %s could not be run", job.id)
+            return Faulted(repr(error))
+
+    def _record(self, job: ClaimedJob, outcome: Outcome) -> None:
+        while True:
+            try:
+                return self._write_down(job, outcome)
+            except Exception as error:
+                logger.exception("the outcome of job %s could not be written down; trying again", job.id)
+                outcome = Faulted(repr(error))
+            if self._stopping.wait(SECONDS_AFTER_FAULT):
+                return None  # still marked as running, so the next server starts it again
+
+    def _write_down(self, job: ClaimedJob, outcome: Outcome) -> None:
+        run = (job.id, job.attempt)
+        memory_limit = self._settings.job_memory_limit_bytes
+        match outcome:
+            case Succeeded(document, arrays):
+                self._journal.succeed(run, document, arrays)
+            case Refused(message, field):
+                self._journal.fail(run, problems.misuse(message, field))
+            case OutOfMemory():
+                self._journal.fail(run, problems.out_of_memory(memory_limit))
+            case TimedOut():
+                self._journal.fail(run, problems.timed_out(self._settings.job_time_limit_seconds))
+            case Crashed(exit_code):
+                logger.error("the process of job %s (%s) ended with code %s", job.id, job.kind, exit_code)
+                self._journal.fail(run, problems.crashed(exit_code, memory_limit))
+            case Faulted(traceback):
+                logger.error("job %s (%s) failed:\n%s", job.id, job.kind, traceback)
+                self._journal.fail(run, problems.internal())
+            case Ended():
+                self._journal.requeue(run)

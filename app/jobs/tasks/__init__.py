@@ -1,0 +1,1 @@
+"""One module per kind of job: `<kind>.py` with `KIND` and `run(payload, context)`, see `app.jobs.task`."""

@@ -1,0 +1,66 @@
+"""The application: the only place where it is wired."""
+
+import pkgutil
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from importlib import import_module
+
+from anyio.to_thread import run_sync
+from fastapi import APIRouter, FastAPI
+from starlette.middleware import Middleware
+
+import app.routers
+from app import __version__
+from app.container import Container
+from app.middleware import BodyLimitGuard, LoopbackGuard, TokenGuard
+from app.openapi_schema import install_openapi, operation_id
+from app.problem_handlers import add_problem_handlers
+from app.settings import Settings
+
+
+def create_app(settings: Settings | None = None) -> FastAPI:
+    """The ASGI application; without `settings` they come from the environment.
+
+    Nothing is read or written before the server starts the lifespan.
+    """
+    settings = settings or Settings()
+    application = FastAPI(
+        title="lpv-oed",
+        version=__version__,
+        lifespan=_lifespan,
+        middleware=_guards(settings),
+        generate_unique_id_function=operation_id,
+        separate_input_output_schemas=False,
+        openapi_url="/v1/openapi.json",
+        docs_url=None,
+        redoc_url=None,
+    )
+    application.state.container = Container(settings)
+    add_problem_handlers(application)
+    for router in _routers():
+        application.include_router(router, prefix="/v1")
+    install_openapi(application)
+    return application
+
+
+@asynccontextmanager
+async def _lifespan(application: FastAPI) -> AsyncIterator[None]:
+    container: Container = application.state.container
+    await run_sync(container.start)
+    try:
+        yield
+    finally:
+        await run_sync(container.stop)
+
+
+def _guards(settings: Settings) -> list[Middleware]:
+    """Outermost first."""
+    token = settings.bearer_token
+    who = Middleware(LoopbackGuard) if token is None else Middleware(TokenGuard, token=token)
+    return [who, Middleware(BodyLimitGuard, most_bytes=settings.max_body_bytes)]
+
+
+def _routers() -> list[APIRouter]:
+    names = sorted(module.name for module in pkgutil.iter_modules(app.routers.__path__))
+    modules = [import_module(f"app.routers.{name}") for name in names]
+    return [module.router for module in modules if hasattr(module, "router")]

@@ -1,0 +1,115 @@
+"""Guards in front of the routes: who is asking, from where, and how much is sent. Plain ASGI."""
+
+import hmac
+from urllib.parse import urlsplit
+
+from starlette.datastructures import Headers
+from starlette.exceptions import HTTPException
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from app.errors import BadRequestError, ContentTooLargeError, ForbiddenError, ProblemError, UnauthorizedError
+from app.problem_handlers import answer
+from app.settings import is_loopback
+
+OPEN_PATHS = ("/v1/health",)
+
+
+class Guard:
+    """Base of the guards: refuses a request with a problem, or passes it on."""
+
+    def __init__(self, app: ASGIApp) -> None:
+        self._app = app
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        if scope["type"] != "http":
+            return await self._app(scope, receive, send)
+        try:
+            self.check(scope, Headers(scope=scope))
+        except ProblemError as refusal:
+            return await answer(refusal, scope["path"])(scope, receive, send)
+        await self._app(scope, self.receiver(receive), send)
+
+    def check(self, scope: Scope, headers: Headers) -> None:
+        """Raise ProblemError to refuse the request."""
+
+    def receiver(self, receive: Receive) -> Receive:
+        """What the application reads the body from."""
+        return receive
+
+
+class LoopbackGuard(Guard):
+    """Without a token only this machine is served, and no web page of elsewhere can reach through a browser.
+
+    Refuses connections to other addresses of this machine, names in Host that are not loopback (a name of elsewhere
+    may be made to resolve to 127.0.0.1), and origins that are not loopback.
+    """
+
+    def check(self, scope: Scope, headers: Headers) -> None:
+        address = (scope.get("server") or ("", None))[0]
+        if _is_address(address) and not is_loopback(address):
+            raise ForbiddenError("without a token the service answers on the loopback address only")
+        host = headers.get("host", "")
+        if not is_loopback(_name(f"//{host}")):
+            raise BadRequestError(f"the Host {host!r} is not this machine; ask for 127.0.0.1 or localhost")
+        origin = headers.get("origin")
+        if origin is not None and not is_loopback(_name(origin)):
+            raise ForbiddenError(f"requests of the origin {origin!r} are not answered")
+
+
+class TokenGuard(Guard):
+    """Every request but those to OPEN_PATHS must carry the bearer token."""
+
+    def __init__(self, app: ASGIApp, token: str) -> None:
+        super().__init__(app)
+        self._expected = token.encode()
+
+    def check(self, scope: Scope, headers: Headers) -> None:
+        if scope["path"] in OPEN_PATHS:
+            return
+        scheme, _, given = headers.get("authorization", "").partition(" ")
+        if scheme.lower() != "bearer" or not hmac.compare_digest(given.strip().encode("latin-1"), self._expected):
+            raise UnauthorizedError(
+                "send the header Authorization: Bearer <token> with the token of this server",
+                headers={"WWW-Authenticate": "Bearer"},
+            )
+
+
+class BodyLimitGuard(Guard):
+    """Refuses a body beyond the limit, by its announced length or as soon as more has come in."""
+
+    def __init__(self, app: ASGIApp, most_bytes: int) -> None:
+        super().__init__(app)
+        self._most_bytes = most_bytes
+
+    @property
+    def _refusal(self) -> str:
+        return f"the body is larger than {self._most_bytes} bytes; send less or raise LPV_OED_MAX_BODY_BYTES"
+
+    def check(self, scope: Scope, headers: Headers) -> None:
+        announced = headers.get("content-length", "0")
+        if announced.isdecimal() and int(announced) > self._most_bytes:
+            raise ContentTooLargeError(self._refusal)
+
+    def receiver(self, receive: Receive) -> Receive:
+        received = 0
+
+        async def limited() -> Message:
+            nonlocal received
+            message = await receive()
+            received += len(message.get("body", b""))
+            if received > self._most_bytes:
+                raise HTTPException(ContentTooLargeError.status, self._refusal)
+            return message
+
+        return limited
+
+
+def _is_address(text: str) -> bool:
+    return text.replace(".", "").isdigit() or ":" in text
+
+
+def _name(url: str) -> str:
+    try:
+        return urlsplit(url).hostname or ""
+    except ValueError:
+        return ""

@@ -1,0 +1,102 @@
+"""The published OpenAPI document, in the shape that client generators understand."""
+
+from typing import Any
+
+from fastapi import FastAPI
+from fastapi.openapi.utils import get_openapi
+from fastapi.routing import APIRoute
+
+from app.errors import MEDIA_TYPE
+from app.schemas.common import Problem
+from app.schemas.jobs import JobEvent
+
+Json = dict[str, Any]
+REFERENCE = "#/components/schemas/{model}"
+PUBLISHED = (Problem, JobEvent)
+DESCRIPTION = (
+    "Identification of linear parameter-varying systems with the least input energy for a guaranteed accuracy: "
+    "describe a plant, design experiments, identify from what was measured."
+)
+_METHODS = ("get", "put", "post", "delete", "patch")
+_ALWAYS = {400: "The request cannot be read", 401: "The bearer token is missing or wrong"}
+_ALWAYS |= {403: "This origin is not answered", 500: "A fault of the service"}
+_WITH_BODY = {413: "The body is too large", 415: "The content type of the body is not the expected one"}
+
+
+def operation_id(route: APIRoute) -> str:
+    """The name of the function in lower camel case."""
+    first, *rest = route.name.split("_")
+    return first + "".join(word.capitalize() for word in rest)
+
+
+def install_openapi(application: FastAPI) -> None:
+    """Make the application publish the document that `build` returns."""
+
+    def openapi() -> Json:
+        if not application.openapi_schema:
+            application.openapi_schema = build(application)
+        return application.openapi_schema
+
+    application.openapi = openapi  # type: ignore[method-assign]
+
+
+def build(application: FastAPI) -> Json:
+    """The OpenAPI document of all routes."""
+    document = get_openapi(
+        title=application.title,
+        version=application.version,
+        description=DESCRIPTION,
+        routes=application.routes,
+        separate_input_output_schemas=False,
+    )
+    schemas = document.setdefault("components", {}).setdefault("schemas", {})
+    for model in PUBLISHED:
+        _publish(model.model_json_schema(ref_template=REFERENCE, by_alias=True), model.__name__, schemas)
+    for path in document["paths"].values():
+        for method in _METHODS:
+            if method in path:
+                _declare_problems(path[method])
+    for unused in ("HTTPValidationError", "ValidationError"):
+        schemas.pop(unused, None)
+    document["components"]["securitySchemes"] = {"bearer": {"type": "http", "scheme": "bearer"}}
+    document["security"] = [{}, {"bearer": []}]
+    _mark_numbers(document)
+    return document
+
+
+def _publish(schema: Json, name: str, schemas: Json) -> None:
+    for inner, definition in schema.pop("$defs", {}).items():
+        schemas.setdefault(inner, definition)
+    schemas.setdefault(name, schema)
+
+
+def _declare_problems(operation: Json) -> None:
+    possible = dict(_ALWAYS)
+    has_parameters = bool(operation.get("parameters"))
+    if "requestBody" in operation:
+        possible |= _WITH_BODY
+    if has_parameters or "requestBody" in operation:
+        possible[422] = "A field is not as it should be; every bad one is named"
+    if any(parameter["in"] == "path" for parameter in operation.get("parameters", ())):
+        possible[404] = "There is no such resource"
+    if any(parameter["name"] == "Idempotency-Key" for parameter in operation.get("parameters", ())):
+        possible[409] = "The Idempotency-Key was used for another request"
+    declared = operation["responses"]
+    for status, description in sorted(possible.items()):
+        declared[str(status)] = _problem_response(declared.get(str(status), {}).get("description"), description)
+
+
+def _problem_response(stated: str | None, description: str) -> Json:
+    text = description if stated in (None, "Validation Error") else stated
+    return {"description": text, "content": {MEDIA_TYPE: {"schema": {"$ref": REFERENCE.format(model="Problem")}}}}
+
+
+def _mark_numbers(node: Any) -> None:
+    if isinstance(node, dict):
+        if node.get("type") == "number":
+            node.setdefault("format", "double")
+        for value in node.values():
+            _mark_numbers(value)
+    elif isinstance(node, list):
+        for value in node:
+            _mark_numbers(value)

@@ -1,0 +1,118 @@
+"""Turns everything that can go wrong in a request into a problem document."""
+
+import logging
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from fastapi import FastAPI, Request, Response, params
+from fastapi.exceptions import RequestValidationError
+from pydantic.alias_generators import to_camel
+from starlette.exceptions import HTTPException
+
+from app.errors import (
+    BadRequestError,
+    InternalError,
+    ProblemError,
+    UnprocessableError,
+    UnsupportedMediaTypeError,
+    problem_of_status,
+    problem_response,
+)
+from app.json_pointer import body_pointer, pointer
+from app.schemas.common import FieldProblem
+from app.store.arrays import ArraysTooLargeError
+from identification.errors import MisuseError
+
+logger = logging.getLogger(__name__)
+
+
+def add_problem_handlers(application: FastAPI) -> None:
+    """Register a handler for every kind of exception."""
+    application.add_exception_handler(ProblemError, _on_problem_error)
+    application.add_exception_handler(RequestValidationError, _on_validation_error)
+    application.add_exception_handler(HTTPException, _on_http_exception)
+    application.add_exception_handler(MisuseError, _on_misuse)
+    application.add_exception_handler(ArraysTooLargeError, _on_arrays_too_large)
+    application.add_exception_handler(Exception, _on_fault)
+
+
+def answer(error: ProblemError, path: str) -> Response:
+    """The HTTP answer of an error."""
+    return problem_response(error.problem(path), error.headers)
+
+
+async def _on_problem_error(request: Request, error: Exception) -> Response:
+    assert isinstance(error, ProblemError)
+    return answer(error, request.url.path)
+
+
+async def _on_http_exception(request: Request, error: Exception) -> Response:
+    assert isinstance(error, HTTPException)
+    return problem_response(problem_of_status(error.status_code, str(error.detail)), error.headers)
+
+
+async def _on_misuse(request: Request, error: Exception) -> Response:
+    assert isinstance(error, MisuseError)
+    fields = [FieldProblem(pointer="/" + to_camel(error.field), detail=str(error))] if error.field else []
+    return answer(UnprocessableError(str(error), fields), request.url.path)
+
+
+async def _on_arrays_too_large(request: Request, error: Exception) -> Response:
+    return answer(UnprocessableError(str(error)), request.url.path)
+
+
+async def _on_fault(request: Request, error: Exception) -> Response:
+    return answer(InternalError("a fault of the service; its log has the cause"), request.url.path)
+
+
+async def _on_validation_error(request: Request, error: Exception) -> Response:
+    assert isinstance(error, RequestValidationError)
+    return answer(_error_of_validation(request, error), request.url.path)
+
+
+def _error_of_validation(request: Request, error: RequestValidationError) -> ProblemError:
+    failures = error.errors()
+    for failure in failures:
+        if failure["type"] == "json_invalid":
+            reason, position = failure["ctx"]["error"], failure["loc"][-1]
+            return BadRequestError(f"the body is no JSON: {reason} at character {position}")
+    if any(failure["loc"][0] == "body" for failure in failures):
+        expected = _expected_media_type(request)
+        if expected is not None and not _has_media_type(request, expected):
+            return UnsupportedMediaTypeError(f"the body must be sent as {expected}")
+    fields = [_field_problem(failure, error.body) for failure in failures]
+    return UnprocessableError(_summary(fields), fields)
+
+
+def _field_problem(failure: Mapping[str, Any], body: Any) -> FieldProblem:
+    location, *steps = failure["loc"]
+    if location == "body":
+        where = body_pointer(steps, _readable(body), missing=failure["type"] == "missing")
+    else:
+        where = pointer([str(step) for step in steps[:1]])
+    return FieldProblem(pointer=where, detail=failure["msg"], location=str(location))
+
+
+def _readable(body: Any) -> Any:
+    """The body as plain data; the fields of a form are its first level."""
+    return dict(body) if isinstance(body, Mapping) else body
+
+
+def _summary(fields: Sequence[FieldProblem]) -> str:
+    first = fields[0]
+    more = f", and {len(fields) - 1} more" if len(fields) > 1 else ""
+    return f"{first.pointer or 'the body'}: {first.detail}{more}"
+
+
+def _expected_media_type(request: Request) -> str | None:
+    body_field = getattr(request.scope.get("route"), "body_field", None)
+    if body_field is None:
+        return None
+    return "multipart/form-data" if isinstance(body_field.field_info, params.Form) else "application/json"
+
+
+def _has_media_type(request: Request, expected: str) -> bool:
+    given = request.headers.get("content-type", "").partition(";")[0].strip().lower()
+    if expected == "application/json":
+        return given == expected or (given.startswith("application/") and given.endswith("+json"))
+    return given in (expected, "application/x-www-form-urlencoded")

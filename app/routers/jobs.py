@@ -1,0 +1,56 @@
+"""Jobs: list, look, watch, cancel."""
+
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Header, Query
+from sse_starlette import EventSourceResponse
+
+from app.dependencies import ContainerDependency, Cursor, LedgerDependency, Limit
+from app.jobs.records import JobState
+from app.schemas.jobs import Job, JobPage
+from app.services.job_events import watch
+
+router = APIRouter(prefix="/jobs", tags=["jobs"])
+
+EventId = Annotated[str | None, Header(alias="Last-Event-ID", pattern=r"^\d{1,18}$")]
+EventIdQuery = Annotated[str | None, Query(alias="lastEventId", pattern=r"^\d{1,18}$")]
+EVENT_STREAM: dict[int | str, dict[str, Any]] = {
+    200: {
+        "description": "Server-sent events; the data of each is a JobEvent, its id the sequence",
+        "content": {"text/event-stream": {"schema": {"type": "string"}}},
+    }
+}
+
+
+@router.get("")
+def list_jobs(
+    ledger: LedgerDependency, state: JobState | None = None, limit: Limit = 50, cursor: Cursor = None
+) -> JobPage:
+    """All jobs, newest first."""
+    page = ledger.list(state, limit, cursor)
+    return JobPage(items=[Job.of(record) for record in page.items], next_cursor=page.next_cursor)
+
+
+@router.get("/{jobId}")
+def get_job(jobId: str, ledger: LedgerDependency) -> Job:
+    """One job."""
+    return Job.of(ledger.get(jobId))
+
+
+@router.post("/{jobId}/cancellation", responses={409: {"description": "The job has already finished"}})
+def cancel_job(jobId: str, ledger: LedgerDependency) -> Job:
+    """End a queued or running job for good."""
+    return Job.of(ledger.cancel(jobId))
+
+
+@router.get("/{jobId}/events", response_class=EventSourceResponse, responses=EVENT_STREAM)
+def watch_job_events(
+    jobId: str,
+    container: ContainerDependency,
+    last_event_id: EventId = None,
+    last_event_id_query: EventIdQuery = None,
+) -> EventSourceResponse:
+    """What happens to a job, from its submission or from after the event Last-Event-ID, until it has finished."""
+    container.ledger.get(jobId)
+    after = int(last_event_id or last_event_id_query or 0)
+    return EventSourceResponse(watch(container.ledger, container.hub, jobId, after))

@@ -1,0 +1,1 @@
+"""What the routers call: load, one call into the packages below or one job, save."""

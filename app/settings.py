@@ -1,0 +1,63 @@
+"""Settings of the service, read from the environment (LPV_OED_…)."""
+
+import ipaddress
+from pathlib import Path
+from typing import Self
+
+from pydantic import Field, SecretStr, model_validator
+from pydantic_settings import BaseSettings, SettingsConfigDict
+
+MEBIBYTE = 1024 * 1024
+GIBIBYTE = 1024 * MEBIBYTE
+
+
+class Settings(BaseSettings):
+    """Everything that can be set; the defaults serve one user on this machine."""
+
+    model_config = SettingsConfigDict(env_prefix="LPV_OED_", extra="ignore", frozen=True)
+
+    data_dir: Path = Field(default=Path("lpv-oed-data"), description="directory of the database and the array files")
+    host: str = Field(default="127.0.0.1", description="address to listen on; beyond loopback a token is required")
+    port: int = Field(default=8000, ge=0, le=65535, description="port to listen on")
+    token: SecretStr | None = Field(default=None, description="bearer token that every request must carry")
+    database_url: str | None = Field(default=None, description="SQLAlchemy URL; default: SQLite in the data directory")
+    workers: int = Field(default=2, ge=1, le=256, description="jobs that run at the same time")
+    job_time_limit_seconds: float = Field(default=3600.0, gt=0, description="a job that runs longer is ended")
+    job_memory_limit_bytes: int = Field(default=4 * GIBIBYTE, ge=256 * MEBIBYTE, description="address space of a job")
+    job_attempts: int = Field(default=10, ge=1, description="starts of one job before it fails when servers keep dying")
+    jobs_per_child: int = Field(default=100, ge=1, description="jobs that one child process runs before it is replaced")
+    task_packages: tuple[str, ...] = Field(default=("app.jobs.tasks",), description="packages with the kinds of jobs")
+    max_body_bytes: int = Field(default=64 * MEBIBYTE, ge=1024, description="largest request body")
+    max_array_bytes: int = Field(default=GIBIBYTE, ge=1024, description="largest set of arrays kept as one file")
+
+    @model_validator(mode="after")
+    def _beyond_loopback_only_with_token(self) -> Self:
+        if self.token is not None and not self.token.get_secret_value():
+            raise ValueError("LPV_OED_TOKEN is empty; leave it out or give a token")
+        if self.token is None and not is_loopback(self.host):
+            raise ValueError(
+                f"refusing to listen on {self.host} without authentication; "
+                "set LPV_OED_TOKEN, or LPV_OED_HOST=127.0.0.1"
+            )
+        return self
+
+    @property
+    def arrays_dir(self) -> Path:
+        return self.data_dir / "arrays"
+
+    @property
+    def resolved_database_url(self) -> str:
+        """The database to use: the one that was set, else SQLite in the data directory."""
+        return self.database_url or f"sqlite:///{self.data_dir.resolve() / 'lpv-oed.sqlite'}"
+
+    @property
+    def bearer_token(self) -> str | None:
+        return None if self.token is None else self.token.get_secret_value()
+
+
+def is_loopback(host: str) -> bool:
+    """Whether `host` names this machine only."""
+    try:
+        return ipaddress.ip_address(host.strip("[]")).is_loopback
+    except ValueError:
+        return host.lower() == "localhost"

@@ -1,0 +1,1 @@
+"""What is kept: rows in a database, arrays in content-addressed files."""

@@ -1,0 +1,56 @@
+"""The database: an engine, read sessions and write sessions."""
+
+import json
+from collections.abc import Iterator
+from contextlib import AbstractContextManager, contextmanager, nullcontext
+from functools import partial
+from threading import Lock
+from typing import Any
+
+from sqlalchemy import Engine, create_engine, make_url, text
+from sqlalchemy.orm import Session
+
+from app.store import sqlite
+from app.store.migrate import upgrade
+
+
+class Database:
+    """Where the rows are. Thread-safe; call `migrate` once before use and `close` at the end."""
+
+    def __init__(self, url: str) -> None:
+        self._engine = _create_engine(url)
+        self._writing = self._engine.execution_options(**{sqlite.WRITE_OPTION: True})
+        self._turn: AbstractContextManager[Any] = Lock() if self._engine.dialect.name == "sqlite" else nullcontext()
+
+    def migrate(self) -> None:
+        """Bring the tables to the newest version; does nothing when they are."""
+        with self._turn, self._writing.begin() as connection:
+            upgrade(connection)
+
+    @contextmanager
+    def read(self) -> Iterator[Session]:
+        """A session to read from: one consistent snapshot, never blocked by a writer."""
+        with Session(self._engine, expire_on_commit=False) as session:
+            yield session
+
+    @contextmanager
+    def write(self) -> Iterator[Session]:
+        """A session to write with: one transaction, committed on return, rolled back on any exception."""
+        with self._turn, Session(self._writing, expire_on_commit=False) as session, session.begin():
+            yield session
+
+    def check(self) -> None:
+        """Raise when the database does not answer."""
+        with self._engine.connect() as connection:
+            connection.execute(text("SELECT 1"))
+
+    def close(self) -> None:
+        self._engine.dispose()
+
+
+def _create_engine(url: str) -> Engine:
+    dumps = partial(json.dumps, allow_nan=False, separators=(",", ":"))
+    engine = create_engine(make_url(url), json_serializer=dumps, pool_pre_ping=not url.startswith("sqlite"))
+    if engine.dialect.name == "sqlite":
+        sqlite.prepare(engine)
+    return engine
