@@ -1,0 +1,209 @@
+"""The certified solver: a small master problem, prices, better spectra, until no spectrum is worth more than it costs.
+
+    primal   min Σ_m E_m                       s.t.  Σ_m I_m ⪰ R_j for every target j,  E_m ≤ α_m
+    dual     max Σ_j tr R_j Z_j − Σ_m α_m μ_m  s.t.  ∫ a* (Σ_j Z_j) a Φ ≤ 1 + μ_m for every Φ of energy one at m
+
+Here R_j stands for the part of the target that prior information does not yet cover.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from identification.arrays import FloatArray, IntArray
+from oed.master import MasterSolution, solve_master
+from oed.spectra.family import Block, Pricing
+
+Progress = Callable[[int, float], None]
+ACTIVE_TARGETS = 12
+NEGLIGIBLE = 1e-3
+CAP_SLACK = 1e-6
+FEASIBLE = 1e-7
+BOUNDLESS = 1e6
+
+
+@dataclass(frozen=True, eq=False)
+class CertifiedSpectra:
+    """Blocks with weights that meet the targets, and a lower bound on what any spectra of the family need."""
+
+    blocks: list[Block]
+    weights: list[FloatArray]
+    prices: FloatArray
+    cap_prices: FloatArray
+    energy: float
+    lower_bound: float
+    iterations: int
+
+    @property
+    def gap(self) -> float:
+        """(energy − lower bound) / energy."""
+        return (self.energy - self.lower_bound) / self.energy if self.energy > 0 else 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Shortfall:
+    """No spectra under the caps meet the targets: at most the share 1 − `least` of each target R_j can be reached."""
+
+    least: float
+
+
+def least_energy(
+    pricing: Pricing,
+    targets: FloatArray,
+    caps: FloatArray,
+    tolerance: float,
+    max_iterations: int = 200,
+    progress: Progress | None = None,
+    blocks: Sequence[Block] = (),
+) -> CertifiedSpectra | Shortfall:
+    """The spectra of least energy for targets R_j (J, k, k) under caps α (M,), to a relative gap of `tolerance`.
+
+    `blocks` may bring spectra that are known to be useful; `progress` is told the iteration and the gap. The caller
+    judges the gap: it may exceed `tolerance` after `max_iterations`. Good conditioning is the caller's: the information
+    of flat spectra should be of the order of the unit matrix.
+    """
+    start = [*pricing.flat(), *blocks]
+    if np.isfinite(caps).any():
+        found = _within_caps(pricing, targets, caps, start)
+        if isinstance(found, Shortfall):
+            return found
+        start = found
+    best = _Bounds(np.inf, 0.0, np.zeros_like(targets), np.zeros(len(caps)))
+    active = np.arange(min(len(targets), ACTIVE_TARGETS))
+    for iteration in range(1, max_iterations + 1):
+        master = solve_master(start, targets[active], caps)
+        offer = pricing.best(master.prices.sum(axis=0), 1 + master.cap_prices, start, master.weights)
+        best = best.improved(start, master, offer.worth, targets, active, caps)
+        if progress is not None:
+            progress(iteration, best.gap)
+        if best.gap <= tolerance / 10 or not master.solved:
+            break
+        active = _with_violated(active, start, master, targets)
+        start = offer.blocks
+    return best.sparse(targets, caps, tolerance, iteration)
+
+
+@dataclass(frozen=True, eq=False)
+class _Bounds:
+    """The best feasible spectra and the best lower bound so far."""
+
+    energy: float
+    lower_bound: float
+    prices: FloatArray
+    cap_prices: FloatArray
+    blocks: Sequence[Block] = ()
+    weights: Sequence[FloatArray] = ()
+
+    @property
+    def gap(self) -> float:
+        return 1 - self.lower_bound / self.energy if np.isfinite(self.energy) and self.energy > 0 else 1.0
+
+    def improved(
+        self,
+        blocks: Sequence[Block],
+        master: MasterSolution,
+        worth: FloatArray,
+        targets: FloatArray,
+        active: IntArray,
+        caps: FloatArray,
+    ) -> "_Bounds":
+        lower_bound = _dual_value(master.prices, targets[active], worth, caps)
+        better = self
+        if lower_bound > self.lower_bound:
+            prices = np.zeros_like(targets)
+            prices[active] = master.prices
+            better = replace(better, lower_bound=lower_bound, prices=prices, cap_prices=master.cap_prices)
+        return better.with_primal(blocks, master.weights, targets, caps)
+
+    def with_primal(
+        self, blocks: Sequence[Block], weights: Sequence[FloatArray], targets: FloatArray, caps: FloatArray
+    ) -> "_Bounds":
+        """These weights, scaled until they meet all targets, if that takes no more energy and breaks no cap."""
+        scale = _needed_scale(_total(blocks, weights), targets)
+        energies = scale * _energies(blocks, weights, len(caps))
+        if energies.sum() >= self.energy or np.any(energies > caps * (1 + CAP_SLACK)):
+            return self
+        return replace(self, energy=energies.sum(), blocks=blocks, weights=[scale * weight for weight in weights])
+
+    def sparse(self, targets: FloatArray, caps: FloatArray, tolerance: float, iterations: int) -> CertifiedSpectra:
+        """Without operating points of negligible energy, as long as the gap stays within the tolerance."""
+        energies = _energies(self.blocks, self.weights, len(caps))
+        single = [float(np.trace(weight)) for weight in self.weights]
+        least = NEGLIGIBLE * max(single, default=0.0)
+        kept = [
+            block
+            for block, energy in zip(self.blocks, single, strict=True)
+            if energy > least and energies[block.point] > NEGLIGIBLE * energies.max()
+        ]
+        solution = self
+        if 0 < len(kept) < len(self.blocks):
+            binding = np.argsort([-np.trace(price) for price in self.prices])[:ACTIVE_TARGETS]
+            weights = solve_master(kept, targets[np.sort(binding)], caps).weights
+            fewer = replace(self, energy=np.inf).with_primal(kept, weights, targets, caps)
+            solution = fewer if fewer.gap <= max(tolerance, self.gap) else self
+        return CertifiedSpectra(
+            list(solution.blocks),
+            list(solution.weights),
+            solution.prices,
+            solution.cap_prices,
+            float(solution.energy),
+            solution.lower_bound,
+            iterations,
+        )
+
+
+def _within_caps(
+    pricing: Pricing, targets: FloatArray, caps: FloatArray, blocks: list[Block]
+) -> list[Block] | Shortfall:
+    """Blocks with which the targets can be met under the caps, or how much is missing at least."""
+    flat_energy = _needed_scale(_total(blocks, [np.eye(len(block.shapes)) for block in blocks]), targets) * len(caps)
+    limits = np.minimum(caps, BOUNDLESS * flat_energy)
+    for _ in range(100):
+        master = solve_master(blocks, targets, limits, shortfall_only=True)
+        charges = master.cap_prices + 1e-9 * master.cap_prices.max()
+        offer = pricing.best(master.prices.sum(axis=0), charges, blocks, master.weights)
+        if master.shortfall <= FEASIBLE:
+            return [*pricing.flat(), *offer.blocks]
+        least = float(np.einsum("jab,jab", master.prices, targets) - limits @ np.maximum(offer.worth, 0.0))
+        if least > FEASIBLE and master.shortfall - least <= 1e-3 * master.shortfall:
+            return Shortfall(least)
+        blocks = offer.blocks
+    return Shortfall(max(least, 0.0))
+
+
+def _dual_value(prices: FloatArray, targets: FloatArray, worth: FloatArray, caps: FloatArray) -> float:
+    """The best bound t Σ tr R_j Z_j − Σ_m α_m max(0, t worth_m − 1) over the scale t of the prices."""
+    value = float(np.einsum("jab,jab", prices, targets))
+    capped = np.isfinite(caps)
+    highest = worth[~capped].max(initial=0.0)
+    scales = 1 / worth[worth > 0]
+    scales = scales[scales * highest <= 1 + 1e-12]
+    charges = np.maximum(np.outer(scales, worth[capped]) - 1, 0.0) @ caps[capped]
+    return float(np.max(scales * value - charges, initial=0.0))
+
+
+def _needed_scale(total: FloatArray, targets: FloatArray) -> float:
+    """The least s with s · total ⪰ R_j for every j; infinite where the total cannot reach them."""
+    values, vectors = np.linalg.eigh(total)
+    root = vectors / np.sqrt(np.maximum(values, 1e-14 * max(values[-1], 1e-300)))
+    return float(np.linalg.eigvalsh(root.T @ targets @ root)[:, -1].max())
+
+
+def _with_violated(active: IntArray, blocks: Sequence[Block], master: MasterSolution, targets: FloatArray) -> IntArray:
+    """The active targets and those that the solution misses most."""
+    if len(active) == len(targets):
+        return active
+    slack = np.linalg.eigvalsh(_total(blocks, master.weights) - targets)[:, 0]
+    missed = np.argsort(slack)[: ACTIVE_TARGETS // 2]
+    return np.union1d(active, missed[slack[missed] < -1e-9])
+
+
+def _total(blocks: Sequence[Block], weights: Sequence[FloatArray]) -> FloatArray:
+    return np.asarray(sum(block.total(weight) for block, weight in zip(blocks, weights, strict=True)))
+
+
+def _energies(blocks: Sequence[Block], weights: Sequence[FloatArray], points: int) -> FloatArray:
+    energies = np.zeros(points)
+    np.add.at(energies, [block.point for block in blocks], [np.trace(weight) for weight in weights])
+    return energies

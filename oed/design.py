@@ -1,0 +1,202 @@
+"""Least-energy experiments with a certificate [Ghosh2018, (17), (19)]."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from identification.arrays import FloatArray, IntArray
+from identification.outcome import Outcome
+from identification.signals import OperatingPoint
+from oed.box import refine_over_box
+from oed.column_generation import CertifiedSpectra, Progress, Shortfall, least_energy
+from oed.duration import required_samples
+from oed.information import noise_information, require_stable
+from oed.problem import DesignProblem
+from oed.scaling import ScaledProblem, scaled
+from oed.spectra.family import Spectrum
+
+
+@dataclass(frozen=True, eq=False)
+class DesignedExperiment:
+    """One local experiment: where, with how much energy Σ_t u(t)², and with which spectrum."""
+
+    operating_point: OperatingPoint
+    energy: float
+    spectrum: Spectrum
+
+
+@dataclass(frozen=True)
+class Binding:
+    """What holds the energy up: the `index`-th target or the cap of the `index`-th operating point.
+
+    `multiplier` is, for a target, how much the energy grows per unit of growth of R (relative to both); for a cap, the
+    energy that one unit of a higher cap would save.
+    """
+
+    what: Literal["target", "cap"]
+    index: int
+    multiplier: float
+
+
+@dataclass(frozen=True, eq=False)
+class Design:
+    """The experiments to do, and how good they are certified to be.
+
+    `total_energy` J (primal) and `lower_bound` (dual): no spectra of the family at any of the allowed points meet the
+    targets with less; `gap` = 1 − lower_bound / J. `samples` N_p is the duration asked for, or the next above
+    `required_samples` of rule (18); `expected_covariance` P_θ (k, k), infinite where nothing is learnt.
+    """
+
+    outcome: Outcome
+    experiments: tuple[DesignedExperiment, ...]
+    total_energy: float
+    lower_bound: float
+    gap: float
+    samples: int
+    required_samples: float
+    expected_covariance: FloatArray
+    binding: tuple[Binding, ...]
+
+
+def design(problem: DesignProblem, progress: Progress | None = None) -> Design:
+    """The operating points and input spectra of least energy that guarantee the accuracy asked for.
+
+        min J = Σ_m E_m   s.t.   P_θ⁻¹ ⪰ R_j for every target,   E_m ≤ α_m                 [Ghosh2018, (17), (19)]
+
+    An accuracy that cannot be reached gives the status "infeasible" and advice on what to change; raises MisuseError
+    when the model is unstable at a point or the targets do not fit the model.
+    """
+    require_stable(problem.model, problem.points)
+    sources, targets = _target_matrices(problem)
+    k = problem.model.plant_size
+    missing = targets[:, :k, :k] - problem.prior[:k, :k]
+    open_targets = np.flatnonzero(
+        np.linalg.eigvalsh(missing)[:, -1] > 1e-9 * abs(targets[:, :k, :k]).max(initial=1e-300)
+    )
+    if len(open_targets) == 0:
+        return _described(problem, targets, (), (0.0, 0.0), (), 0)
+    problem_scaled = scaled(problem, missing[open_targets])
+    if isinstance(problem_scaled, Outcome):
+        return _unreachable(problem, problem_scaled)
+    solution, problem_scaled = _solved(problem_scaled, progress)
+    if isinstance(solution, Shortfall):
+        return _unreachable(problem, _shortfall_advice(solution))
+    experiments = _experiments(problem_scaled, solution)
+    binding = _binding(problem_scaled, solution, sources[open_targets])
+    energies = (problem_scaled.unit * solution.energy, problem_scaled.unit * solution.lower_bound)
+    return _described(problem, targets, experiments, energies, binding, solution.iterations)
+
+
+def _target_matrices(problem: DesignProblem) -> tuple[IntArray, FloatArray]:
+    """For each matrix R_j the index of the target that it belongs to, and the matrices (J, k, k)."""
+    matrices = [target.matrices(problem.model) for target in problem.targets]
+    sources = np.repeat(np.arange(len(matrices)), [len(matrix) for matrix in matrices])
+    return sources.astype(np.int64), np.concatenate(matrices)
+
+
+def _solved(problem: ScaledProblem, progress: Progress | None) -> tuple[CertifiedSpectra | Shortfall, ScaledProblem]:
+    solution = least_energy(problem.pricing, problem.targets, problem.caps, problem.tolerance, progress=progress)
+    if problem.original.box and isinstance(solution, CertifiedSpectra):
+        return refine_over_box(problem, solution, progress)
+    return solution, problem
+
+
+def _experiments(problem: ScaledProblem, solution: CertifiedSpectra) -> tuple[DesignedExperiment, ...]:
+    experiments = []
+    for m in sorted({block.point for block in solution.blocks}, key=lambda m: tuple(problem.points[m])):
+        own = [
+            (block, weight * problem.unit)
+            for block, weight in zip(solution.blocks, solution.weights, strict=True)
+            if block.point == m
+        ]
+        spectrum = problem.pricing.spectrum([block for block, _ in own], [weight for _, weight in own])
+        if spectrum.energy > 0:
+            point = tuple(float(value) for value in problem.points[m])
+            experiments.append(DesignedExperiment(point, spectrum.energy, spectrum))
+    return tuple(experiments)
+
+
+def _binding(problem: ScaledProblem, solution: CertifiedSpectra, sources: IntArray) -> tuple[Binding, ...]:
+    shares = np.einsum("jab,jab->j", solution.prices, problem.targets) / solution.energy
+    by_target = np.bincount(sources, shares)
+    targets = [Binding("target", int(i), float(by_target[i])) for i in np.flatnonzero(by_target > 1e-4)]
+    caps = [Binding("cap", int(m), float(solution.cap_prices[m])) for m in np.flatnonzero(solution.cap_prices > 1e-4)]
+    return (*targets, *caps)
+
+
+def _described(
+    problem: DesignProblem,
+    targets: FloatArray,
+    experiments: Sequence[DesignedExperiment],
+    energies: tuple[float, float],
+    binding: tuple[Binding, ...],
+    iterations: int,
+) -> Design:
+    k = problem.model.plant_size
+    energy, lower_bound = energies
+    gap = 1 - lower_bound / energy if energy > 0 else 0.0
+    points = np.array([experiment.operating_point for experiment in experiments]).reshape(-1, problem.points.shape[1])
+    per_sample = noise_information(problem.model, points)
+    needed = required_samples(per_sample, targets[:, k:, k:] - problem.prior[k:, k:])
+    samples = max(problem.samples, int(np.floor(needed)) + 1) if np.isfinite(needed) else problem.samples
+    information = problem.prior.copy()
+    for experiment in experiments:
+        spectrum, point = experiment.spectrum, experiment.operating_point
+        information[:k, :k] += spectrum.information(problem.model, point, problem.step)
+    information[k:, k:] += samples * per_sample.sum(axis=0)
+    return Design(
+        _outcome(problem, gap, needed, iterations),
+        tuple(experiments),
+        float(energy),
+        float(lower_bound),
+        float(gap),
+        samples,
+        needed,
+        _covariance(information, k),
+        binding,
+    )
+
+
+def _covariance(information: FloatArray, k: int) -> FloatArray:
+    """The inverse, block by block where the whole is singular; infinite for a block that nothing is known about."""
+    scale = np.sqrt(np.maximum(np.diagonal(information), 1e-300))
+    correlation = information / np.outer(scale, scale)
+    covariance = np.full_like(information, np.inf)
+    for part in (slice(None), slice(None, k), slice(k, None)):
+        block = correlation[part, part]
+        if block.size and np.linalg.eigvalsh(block)[0] > 1e-14:
+            covariance[part, part] = np.linalg.inv(block) / np.outer(scale[part], scale[part])
+            if part == slice(None):
+                return covariance
+    if k < len(information):
+        covariance[:k, k:] = covariance[k:, :k] = 0.0
+    return covariance
+
+
+def _outcome(problem: DesignProblem, gap: float, needed_samples: float, iterations: int) -> Outcome:
+    if not np.isfinite(needed_samples):
+        advice = (
+            "the chosen operating points cannot determine the noise model: add records without input at further points"
+        )
+        return Outcome("infeasible", advice, iterations)
+    if gap > problem.tolerance:
+        advice = f"a gap of {gap:.1e} remains; the experiments meet the targets, but could take that much less energy"
+        return Outcome("not_converged", advice, iterations)
+    return Outcome("converged", "", iterations)
+
+
+def _shortfall_advice(shortfall: Shortfall) -> Outcome:
+    share = 1 - shortfall.least
+    looser = f"relax all standard deviations by a factor {share**-0.5:.3g}, or " if share > 0 else ""
+    return Outcome(
+        "infeasible",
+        f"under the energy caps at most {100 * share:.3g} % of the information asked for can be reached: {looser}raise"
+        " the caps, allow more operating points, or use prior experiments",
+    )
+
+
+def _unreachable(problem: DesignProblem, outcome: Outcome) -> Design:
+    k = problem.model.dependence.size
+    return Design(outcome, (), np.inf, np.inf, np.inf, problem.samples, np.inf, np.full((k, k), np.inf), ())

@@ -1,0 +1,134 @@
+"""The small linear matrix inequality over the spectra found so far."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+
+import clarabel
+import numpy as np
+from scipy.sparse import csc_array
+
+from identification.arrays import FloatArray, IntArray
+from oed.spectra.family import Block
+
+
+@dataclass(frozen=True, eq=False)
+class MasterSolution:
+    """Weights W of the blocks, multipliers Z (J, k, k) of the targets and μ (M,) of the caps, and the shortfall t."""
+
+    weights: list[FloatArray]
+    prices: FloatArray
+    cap_prices: FloatArray
+    shortfall: float
+    solved: bool
+
+
+def solve_master(
+    blocks: Sequence[Block], targets: FloatArray, caps: FloatArray, *, shortfall_only: bool = False
+) -> MasterSolution:
+    """The least energy over blocks b for targets R_j (J, k, k), under caps α (M,) (infinite: none).
+
+        min Σ_b tr W_b   s.t.   Σ_b Σ_rs (W_b)_rs I_b,rs ⪰ R_j for all j,   Σ_{b at m} tr W_b ≤ α_m,   W_b ⪰ 0
+
+    With `shortfall_only` the energy is free and the least t ≥ 0 is sought for which the targets (1 − t) R_j are met.
+    """
+    layout = _Layout([len(block.shapes) for block in blocks])
+    capped = np.flatnonzero(np.isfinite(caps))
+    k, j = targets.shape[-1], len(targets)
+    information = np.hstack([_information_columns(block) for block in blocks])
+    rows = [-layout.cone_rows(), _cap_rows(blocks, layout, capped), -np.tile(information, (j, 1))]
+    goal = np.concatenate([svec(target) for target in targets])
+    right = np.concatenate([np.zeros(layout.size), caps[capped], -goal])
+    cost = layout.energy.copy()
+    matrix = np.vstack(rows)
+    cones = [*layout.cones(), clarabel.NonnegativeConeT(len(capped)), *[clarabel.PSDTriangleConeT(k)] * j]
+    if shortfall_only:
+        matrix = np.vstack([np.column_stack([matrix, np.zeros(len(matrix))]), np.eye(1, layout.size + 1, layout.size)])
+        matrix[-1 - len(goal) : -1, -1] = -goal
+        matrix[-1, -1] = -1.0
+        right, cost = np.append(right, 0.0), np.append(np.zeros(layout.size), 1.0)
+        cones.append(clarabel.NonnegativeConeT(1))
+    solution = _solve(cost, matrix, right, cones)
+    x, z = np.array(solution.x), np.array(solution.z)[layout.size :]
+    prices = np.array([smat(part, k) for part in z[len(capped) : len(capped) + len(goal)].reshape(j, -1)])
+    cap_prices = np.zeros(len(caps))
+    cap_prices[capped] = z[: len(capped)]
+    shortfall = float(x[-1]) if shortfall_only else 0.0
+    solved = str(solution.status) in ("Solved", "AlmostSolved", "InsufficientProgress")
+    return MasterSolution(layout.weights(x), prices, cap_prices, shortfall, solved)
+
+
+def svec(matrix: FloatArray) -> FloatArray:
+    """The upper triangle of symmetric matrices (…, k, k), column by column, off-diagonal entries times √2."""
+    rows, columns, scale = _triangle(matrix.shape[-1])
+    return np.asarray(matrix[..., rows, columns] * scale)
+
+
+def smat(vector: FloatArray, k: int) -> FloatArray:
+    """The symmetric matrix (k, k) whose `svec` is given."""
+    rows, columns, scale = _triangle(k)
+    matrix = np.zeros((k, k))
+    matrix[rows, columns] = matrix[columns, rows] = vector / scale
+    return matrix
+
+
+@cache
+def _triangle(k: int) -> tuple[IntArray, IntArray, FloatArray]:
+    columns, rows = np.tril_indices(k)
+    return rows, columns, np.where(rows == columns, 1.0, np.sqrt(2))
+
+
+class _Layout:
+    """Where the weights of the blocks stand in the vector of unknowns: scalars first, then triangles."""
+
+    def __init__(self, sizes: list[int]) -> None:
+        self.sizes = sizes
+        lengths = [size * (size + 1) // 2 for size in sizes]
+        ends = np.cumsum(lengths)
+        self.slices = [slice(end - length, end) for end, length in zip(ends, lengths, strict=True)]
+        self.size = int(ends[-1])
+        self.energy = np.concatenate([svec(np.eye(size)) for size in sizes])
+        scalar = [part.start for part, size in zip(self.slices, sizes, strict=True) if size == 1]
+        larger = [part for part, size in zip(self.slices, sizes, strict=True) if size > 1]
+        self.order = np.concatenate([scalar, *(np.arange(part.start, part.stop) for part in larger)]).astype(np.int64)
+        self.scalars = len(scalar)
+
+    def cone_rows(self) -> FloatArray:
+        """The unknowns in the order of their cones."""
+        return np.eye(self.size)[self.order]
+
+    def cones(self) -> list[object]:
+        """The cones that the weights lie in."""
+        larger = [clarabel.PSDTriangleConeT(size) for size in self.sizes if size > 1]
+        return [clarabel.NonnegativeConeT(self.scalars), *larger]
+
+    def weights(self, x: FloatArray) -> list[FloatArray]:
+        """The weight of each block, cleaned of tiny negative eigenvalues."""
+        return [_semidefinite(smat(x[part], size)) for part, size in zip(self.slices, self.sizes, strict=True)]
+
+
+def _semidefinite(weight: FloatArray) -> FloatArray:
+    if len(weight) == 1:
+        return np.maximum(weight, 0.0)
+    values, vectors = np.linalg.eigh(weight)
+    return np.asarray((vectors * np.maximum(values, 0.0)) @ vectors.T)
+
+
+def _information_columns(block: Block) -> FloatArray:
+    rows, columns, scale = _triangle(len(block.shapes))
+    return np.asarray((svec(block.information[rows, columns]) * scale[:, None]).T)
+
+
+def _cap_rows(blocks: Sequence[Block], layout: _Layout, capped: IntArray) -> FloatArray:
+    rows = np.zeros((len(capped), layout.size))
+    for block, part in zip(blocks, layout.slices, strict=True):
+        rows[capped == block.point, part] = layout.energy[part]
+    return rows
+
+
+def _solve(cost: FloatArray, matrix: FloatArray, right: FloatArray, cones: list[object]) -> clarabel.DefaultSolution:
+    settings = clarabel.DefaultSettings()
+    settings.verbose = False
+    settings.max_threads = 1
+    quadratic = csc_array((len(cost), len(cost)))
+    return clarabel.DefaultSolver(quadratic, cost, csc_array(matrix), right, cones, settings).solve()

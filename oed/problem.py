@@ -1,0 +1,101 @@
+"""What a design is asked for."""
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from identification.arrays import FloatArray, finite_floats
+from identification.errors import MisuseError, RangeError, ShapeError
+from identification.models import LpvModel
+from oed.spectra.family import SpectrumFamily
+
+
+class Target(Protocol):
+    """An accuracy target; the plug-ins of `oed.targets`."""
+
+    def matrices(self, model: LpvModel) -> FloatArray:
+        """Matrices R_j (J, k, k), block diagonal in θ_G and θ_H, with P_θ⁻¹ ⪰ R_j for all j [Ghosh2018, (15), (16)]."""
+
+
+@dataclass(frozen=True, eq=False)
+class DesignProblem:
+    """Least input energy for stated accuracy [Ghosh2018, (17)].
+
+    `model`: what is known of the plant (θ and σ_e² or their estimates); `points` (M, s): the operating points to choose
+    from, or with `box` the starting grid of a search over the whole range of the scheduling variables; `samples`: N_p
+    of each local experiment; `caps` (M,): the most energy α_m at each point, infinite for none (Remark 5);
+    `prior_information` (k, k): P⁻¹ of what earlier experiments told (Section 4); `band` in rad/s; `sample_time` of the
+    input in seconds, needed for models in continuous time; `tolerance`: relative gap to be certified.
+    """
+
+    model: LpvModel
+    points: FloatArray
+    targets: tuple[Target, ...]
+    family: SpectrumFamily
+    samples: int
+    caps: FloatArray | None = None
+    prior_information: FloatArray | None = None
+    band: tuple[float, float] | None = None
+    sample_time: float | None = None
+    tolerance: float = 1e-4
+    box: bool = False
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "points", self.model.dependence.points(self.points))
+        if len(self.points) == 0 or len(np.unique(self.points, axis=0)) < len(self.points):
+            raise ShapeError("give at least one operating point, and each of them once", "points")
+        if not self.targets:
+            raise MisuseError("no accuracy target is given; say how accurate the model must become", "targets")
+        if self.samples < 1:
+            raise RangeError(f"the number of samples is {self.samples}; it must be positive", "samples")
+        if not 0 < self.tolerance < 1:
+            raise RangeError(f"the tolerance is {self.tolerance}; choose it between 0 and 1", "tolerance")
+        self._check_caps()
+        self._check_prior()
+        self._check_band()
+
+    @property
+    def step(self) -> float:
+        """The sample time of the input in seconds."""
+        return self.model.structure.sample_time or self.sample_time or 0.0
+
+    @property
+    def limits(self) -> FloatArray:
+        """The energy caps α (M,), infinite where there is none."""
+        return np.full(len(self.points), np.inf) if self.caps is None else self.caps
+
+    @property
+    def prior(self) -> FloatArray:
+        """The prior information (k, k), zero when there is none."""
+        k = self.model.dependence.size
+        return np.zeros((k, k)) if self.prior_information is None else self.prior_information
+
+    def _check_caps(self) -> None:
+        if self.caps is None:
+            return
+        object.__setattr__(self, "caps", np.array(self.caps, dtype=np.float64))
+        if self.box:
+            raise MisuseError("energy caps belong to the points of a grid; leave them out or give a grid", "caps")
+        if self.limits.shape != (len(self.points),):
+            raise ShapeError(f"{self.limits.size} energy caps were given for {len(self.points)} points", "caps")
+        if not np.all(self.limits > 0):
+            raise RangeError("an energy cap is not positive; exclude the operating point instead", "caps")
+
+    def _check_prior(self) -> None:
+        if self.prior_information is None:
+            return
+        prior, k = finite_floats(self.prior_information, "prior_information"), self.model.dependence.size
+        object.__setattr__(self, "prior_information", prior)
+        if prior.shape != (k, k):
+            raise ShapeError(f"the prior information has shape {prior.shape}, it must be {(k, k)}", "prior_information")
+        if np.linalg.eigvalsh(prior)[0] < -1e-9 * abs(prior).max():
+            raise RangeError("the prior information is not positive semidefinite", "prior_information")
+
+    def _check_band(self) -> None:
+        if self.model.structure.sample_time is None and not (self.sample_time and self.sample_time > 0):
+            raise MisuseError("give the sample time of the input; the model is in continuous time", "sample_time")
+        if self.band is not None and not 0 <= self.band[0] <= self.band[1] <= np.pi / self.step * (1 + 1e-9):
+            raise RangeError(
+                f"the band {self.band} rad/s must rise and lie between 0 and {np.pi / self.step:.6g} rad/s", "band"
+            )

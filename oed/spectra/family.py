@@ -1,0 +1,84 @@
+"""What every family of spectra offers to the solver."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from identification.arrays import FloatArray, IntArray
+from identification.models import LpvModel
+from identification.signals import OperatingPoint
+
+NEARLY = 0.97
+
+
+@dataclass(frozen=True, eq=False)
+class Block:
+    """Spectra at one operating point, spanned by r shapes with a weight W (r, r) ⪰ 0.
+
+    The input energy is tr W and the information Σ_ab W_ab `information`_ab; `information` is (r, r, k, k). What the
+    rows of `shapes` mean is known to the family alone.
+    """
+
+    point: int
+    shapes: FloatArray
+    information: FloatArray
+
+    def total(self, weight: FloatArray) -> FloatArray:
+        """Σ_ab W_ab information_ab, (k, k)."""
+        return np.asarray(np.einsum("ab,abij->ij", weight, self.information))
+
+
+class Spectrum(Protocol):
+    """The input spectrum of one local experiment, in units of energy."""
+
+    @property
+    def energy(self) -> float:
+        """Σ_t u(t)² over the experiment."""
+
+    def information(self, model: LpvModel, point: OperatingPoint, sample_time: float) -> FloatArray:
+        """∫ Re(a a*) Φ, the information about θ_G that this spectrum gives at a point, (k_G, k_G)."""
+
+    def line_energies(self, samples: int, sample_time: float) -> tuple[IntArray, FloatArray]:
+        """(indices, energies) of the lines 2πi/(samples · sample_time) of a periodic signal, i = 0 … samples/2."""
+
+
+class Pricing(Protocol):
+    """Spectra of one family at M operating points, searched for what they are worth."""
+
+    def flat(self) -> list[Block]:
+        """At every point a spectrum of energy one that excites all frequencies of the band alike."""
+
+    def best(
+        self, prices: FloatArray, charges: FloatArray, blocks: Sequence[Block], weights: Sequence[FloatArray]
+    ) -> "Offer":
+        """The worth of the best spectra at prices Z (k, k), max ∫ a* Z a Φ over spectra Φ of energy one.
+
+        Worth trying is what is worth more than its charge (M,), or nearly so. `blocks` and `weights` are the solution
+        so far; the offered blocks contain it.
+        """
+
+    def transformed(self, basis: FloatArray) -> "Pricing":
+        """The same for the parameters `basis`⁻¹ θ_G, whose information is basisᵀ (·) basis."""
+
+    def spectrum(self, blocks: Sequence[Block], weights: Sequence[FloatArray]) -> Spectrum:
+        """The spectrum that blocks of one point make together."""
+
+
+@dataclass(frozen=True, eq=False)
+class Offer:
+    """The worth (M,) of the best spectrum at each point, and blocks worth trying."""
+
+    worth: FloatArray
+    blocks: list[Block]
+
+
+class SpectrumFamily(Protocol):
+    """A parametrised set of spectra; the plug-ins of `oed.spectra`."""
+
+    def pricing(
+        self, model: LpvModel, points: ArrayLike, band: tuple[float, float] | None, sample_time: float
+    ) -> Pricing:
+        """Prepare the family at the operating points (M, s), limited to a band (rad/s) where the family can be."""

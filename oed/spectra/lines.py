@@ -1,0 +1,130 @@
+"""Line spectra: power at the lines of a periodic record only."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Annotated, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from identification.arrays import ComplexArray, FloatArray, IntArray
+from identification.errors import RangeError
+from identification.models import LpvModel
+from identification.signals import OperatingPoint
+from oed.information import sensitivity
+from oed.spectra.family import NEARLY, Block, Offer
+
+
+@dataclass(frozen=True, eq=False)
+class LineSpectrum:
+    """Energies Σ_t u(t)² (K,) at `frequencies` (K,) in rad/s, each the line `indices` (K,) of a record of `samples`."""
+
+    frequencies: FloatArray
+    energies: FloatArray
+    indices: IntArray
+    samples: int
+
+    @property
+    def energy(self) -> float:
+        """Σ_t u(t)² over the experiment."""
+        return float(self.energies.sum())
+
+    def information(self, model: LpvModel, point: OperatingPoint, sample_time: float) -> FloatArray:
+        """Σ_i E_i Re(a a*) at the lines, (k_G, k_G)."""
+        a = sensitivity(model, [point], self.frequencies)[0]
+        return np.asarray(((a.T * self.energies) @ a.conj()).real)
+
+    def line_energies(self, samples: int, sample_time: float) -> tuple[IntArray, FloatArray]:
+        """The lines of a period of `samples`; raises RangeError unless every designed line is one of them."""
+        indices = np.rint(self.frequencies * samples * sample_time / (2 * np.pi)).astype(np.int64)
+        exact = 2 * np.pi * indices / (samples * sample_time)
+        if np.any(abs(exact - self.frequencies) > 1e-9 * np.pi / sample_time):
+            raise RangeError(
+                f"a period of {samples} samples does not hold the designed lines; use a multiple of {self.samples}",
+                "samples",
+            )
+        return indices, self.energies
+
+
+@dataclass(frozen=True)
+class LineSpectra:
+    """Line spectra Φ(ω) = Σ_i E_i δ(ω − ω_i) on the lines ω_i = 2πi/(samples · T) of a periodic record.
+
+    The least energy of all spectra; few lines, so that a local experiment alone may not identify its local model
+    (then estimate θ jointly).
+    """
+
+    kind: ClassVar[str] = "lines"
+
+    samples: Annotated[int, "samples per period of the record whose lines may be used"]
+
+    def __post_init__(self) -> None:
+        if self.samples < 2:
+            raise RangeError(f"a period of {self.samples} samples has no lines; use more samples", "samples")
+
+    def pricing(
+        self, model: LpvModel, points: ArrayLike, band: tuple[float, float] | None, sample_time: float
+    ) -> "LinePricing":
+        """Prepare the lines inside the band at the operating points (M, s); raises RangeError for an empty band."""
+        indices = np.arange(self.samples // 2 + 1)
+        line_spacing = 2 * np.pi / (self.samples * sample_time)
+        if band is not None:
+            slack = 1e-9 * len(indices)
+            indices = indices[(indices >= band[0] / line_spacing - slack) & (indices <= band[1] / line_spacing + slack)]
+        if len(indices) == 0:
+            raise RangeError("no line of the record lies in the frequency band; widen it or use more samples", "band")
+        frequencies = np.asarray(indices * line_spacing, dtype=np.float64)
+        return LinePricing(frequencies, indices, self.samples, sensitivity(model, points, frequencies))
+
+    @classmethod
+    def example(cls) -> "LineSpectra":
+        """A small one, for the conformance tests."""
+        return cls(samples=64)
+
+
+@dataclass(frozen=True, eq=False)
+class LinePricing:
+    """The lines at M points: `sensitivities` a (M, F, k); a block's only shape holds the number of its line."""
+
+    frequencies: FloatArray
+    indices: IntArray
+    samples: int
+    sensitivities: ComplexArray
+
+    def flat(self) -> list[Block]:
+        """Equal energy on all lines, as a block without a line of its own."""
+        information = np.einsum("mfi,mfj->mij", self.sensitivities, self.sensitivities.conj()).real
+        mean = information / len(self.frequencies)
+        return [Block(m, np.full((1, 1), -1.0), matrix[None, None]) for m, matrix in enumerate(mean)]
+
+    def best(
+        self, prices: FloatArray, charges: FloatArray, blocks: Sequence[Block], weights: Sequence[FloatArray]
+    ) -> Offer:
+        """a* Z a on all lines; offered are the highest peaks that are worth their charge, and the lines in use."""
+        a = self.sensitivities
+        worth = np.einsum("mfi,mfi->mf", (a @ prices), a.conj()).real
+        highest = worth.max(axis=1)
+        padded = np.pad(worth, [(0, 0), (1, 1)], constant_values=-np.inf)
+        peak = (worth >= padded[:, :-2]) & (worth >= padded[:, 2:])
+        offered = peak & (worth >= np.maximum(NEARLY * charges, 0.9 * highest)[:, None])
+        in_use = [block for block, weight in zip(blocks, weights, strict=True) if weight[0, 0] > 1e-9]
+        known = {(block.point, int(block.shapes[0, 0])) for block in in_use}
+        new = [self._block(m, f) for m, f in zip(*np.nonzero(offered), strict=True) if (m, f) not in known]
+        return Offer(highest, in_use + new)
+
+    def transformed(self, basis: FloatArray) -> "LinePricing":
+        """The same for the parameters basis⁻¹ θ_G."""
+        return LinePricing(self.frequencies, self.indices, self.samples, self.sensitivities @ basis)
+
+    def spectrum(self, blocks: Sequence[Block], weights: Sequence[FloatArray]) -> LineSpectrum:
+        """The lines of blocks of one point, in the order of frequency."""
+        energies = np.zeros(len(self.frequencies))
+        for block, weight in zip(blocks, weights, strict=True):
+            line = int(block.shapes[0, 0])
+            energies[slice(None) if line < 0 else line] += weight[0, 0] / (len(energies) if line < 0 else 1)
+        used = energies > 0
+        return LineSpectrum(self.frequencies[used], energies[used], self.indices[used], self.samples)
+
+    def _block(self, point: int, line: int) -> Block:
+        a = self.sensitivities[point, line]
+        return Block(int(point), np.full((1, 1), float(line)), np.outer(a, a.conj()).real[None, None])

@@ -1,0 +1,1 @@
+"""Accuracy targets, one a file; each becomes matrices R with P⁻¹ ⪰ R."""
