@@ -54,12 +54,13 @@ def levenberg_marquardt(
     damping, status, iterations = 1e-3, "not_converged", 0
     while iterations < max_iterations:
         iterations += 1
-        attainable = _newton_step(residual, jacobian, 0.0)[1]
+        linear = _linearised(residual, jacobian)
+        attainable = float(linear.projected @ linear.projected)
         rounding = 1e-26 * float(np.sum((jacobian @ x) ** 2))
         if attainable <= max(tolerance**2 * float(residual @ residual), rounding):
             status = "converged"
             break
-        trial = _accepted(evaluate, x, residual, jacobian, damping, feasible)
+        trial = _accepted(evaluate, x, float(residual @ residual), linear, damping, feasible)
         if trial is None:
             status = "converged" if attainable <= 1e-6 * (residual @ residual) else "not_converged"
             break
@@ -70,15 +71,14 @@ def levenberg_marquardt(
 def _accepted(
     evaluate: Evaluate,
     x: FloatArray,
-    residual: FloatArray,
-    jacobian: FloatArray,
+    cost: float,
+    linear: "_Linearised",
     damping: float,
     feasible: Callable[[FloatArray], bool] | None,
 ) -> tuple[FloatArray, FloatArray, FloatArray, float] | None:
     """The first trial point with a lower cost, with the damping for the next step; None when even tiny steps fail."""
-    cost = residual @ residual
     for _ in range(25):
-        trial = x + _newton_step(residual, jacobian, damping)[0]
+        trial = x + linear.step(damping)
         if feasible is None or feasible(trial):
             new_residual, new_jacobian = evaluate(trial)
             new_cost = new_residual @ new_residual
@@ -88,16 +88,26 @@ def _accepted(
     return None
 
 
-def _newton_step(residual: FloatArray, jacobian: FloatArray, damping: float) -> tuple[FloatArray, float]:
-    """The damped step, and ‖Qᵀr‖²: how much an undamped step could take off the cost of the linearised problem."""
-    scale, factor = _scaled_factor(np.column_stack([jacobian, residual]))
+@dataclass(frozen=True, eq=False)
+class _Linearised:
+    """‖r + J Δ‖² as ‖projected + triangle (scale Δ)‖² and a constant, J's columns scaled to length one."""
+
+    scale: FloatArray
+    triangle: FloatArray
+    projected: FloatArray
+
+    def step(self, damping: float) -> FloatArray:
+        """The minimiser Δ (n,) with `damping` ‖scale Δ‖² added."""
+        n = len(self.scale)
+        damped = np.vstack([self.triangle, np.sqrt(damping) * np.eye(n)])
+        target = np.concatenate([-self.projected, np.zeros(n)])
+        return np.asarray(np.linalg.lstsq(damped, target, rcond=1e-13)[0] / self.scale)
+
+
+def _linearised(residual: FloatArray, jacobian: FloatArray) -> _Linearised:
     n = jacobian.shape[1]
-    triangle, projected = factor[:n, :n], factor[:n, n] * scale[n]
-    if damping > 0:
-        triangle = np.vstack([triangle, np.sqrt(damping) * np.eye(n)])
-        projected = np.concatenate([projected, np.zeros(n)])
-    solution = np.linalg.lstsq(triangle, -projected, rcond=1e-13)[0]
-    return solution / scale[:n], float(projected @ projected)
+    scale, factor = _scaled_factor(np.column_stack([jacobian, residual]))
+    return _Linearised(scale[:n], factor[:n, :n], factor[:n, n] * scale[n])
 
 
 def _scaled_factor(matrix: FloatArray) -> tuple[FloatArray, FloatArray]:

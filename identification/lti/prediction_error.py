@@ -1,0 +1,122 @@
+"""Prediction error identification of one operating point."""
+
+from dataclasses import dataclass, replace
+from typing import Annotated, ClassVar
+
+import numpy as np
+
+from identification.arrays import FloatArray
+from identification.errors import MisuseError, NotIdentifiableError
+from identification.estimates import LocalEstimate
+from identification.initial_conditions import (
+    InitialConditions,
+    errors_from,
+    errors_only,
+    free_parameters,
+    simulated_output,
+)
+from identification.least_squares import LeastSquaresSolution
+from identification.likelihood import require_same_sampling
+from identification.lti.box_jenkins_start import waves
+from identification.lti.multistart import lowest_minimum
+from identification.models import LocalModel, RationalStructure
+from identification.outcome import Outcome, TestResult
+from identification.signals import TimeRecord
+from identification.whiteness import input_independence, whiteness
+
+
+@dataclass(frozen=True)
+class PredictionError:
+    """Prediction error estimate of the Box–Jenkins family from a time record [Ghosh2018, (6)], in discrete time.
+
+        ζ̂ = arg min Σ_t ε²(t, ζ),   ε = H⁻¹(q, ζ) (y − G(q, ζ) u)
+        σ̂_e² = Σ ε² / (N − n − n_x),   P_ζ = σ̂_e² (JᵀJ)⁻¹,   J = ∂ε/∂ζ        (the sample version of (7) and (8))
+
+    n_x = n_a values of the initial state are estimated along with ζ and marginalised when `initial_conditions` is
+    "estimate"; with "zero" the plant starts from rest and n_x = 0. The noise model starts from rest in both cases.
+    The search starts from linear estimates, see `identification.lti.box_jenkins_start`, and stays among stable models.
+    σ̂_e² does not fall below the rounding of the output.
+    """
+
+    kind: ClassVar[str] = "prediction_error"
+    data: ClassVar[type] = TimeRecord
+
+    initial_conditions: Annotated[
+        InitialConditions, "whether the plant starts from rest (zero) or from an unknown state (estimate)"
+    ] = "estimate"
+
+    def __post_init__(self) -> None:
+        if self.initial_conditions not in ("zero", "estimate"):
+            raise MisuseError('choose "zero" or "estimate"', "initial_conditions")
+
+    def estimate(self, structure: RationalStructure, record: TimeRecord) -> LocalEstimate:
+        """The model of one record with its covariance, tests of its prediction errors and fit.
+
+        An input that does not excite all parameters gives the outcome "not_identifiable" and infinite variances.
+        Raises MisuseError when structure and record do not fit each other, and NotIdentifiableError when the record is
+        shorter than the number of unknowns, or its input or output is zero throughout.
+        """
+        free = free_parameters(structure, self.initial_conditions)
+        _require_information(structure, record, free)
+        scales = _rms(record.input), _rms(record.output)
+        scaled = replace(record, input=record.input / scales[0], output=record.output / scales[1])
+        solution = self._search(structure, scaled)
+        units = np.ones(structure.size)
+        units[structure.n_a : structure.n_plant] = scales[1] / scales[0]
+        variance = max(solution.cost / (len(record) - structure.size - free), float(np.finfo(float).eps) ** 2)
+        covariance = variance * solution.covariance * np.outer(units, units)
+        model = LocalModel(structure, record.operating_point, solution.x * units, covariance, variance * scales[1] ** 2)
+        outcome = _outcome(structure, solution)
+        return LocalEstimate(model, outcome, _tests(structure, solution, scaled), self._fit(model, record))
+
+    def _search(self, structure: RationalStructure, record: TimeRecord) -> LeastSquaresSolution:
+        return lowest_minimum(
+            lambda zeta: errors_from(structure, zeta, record, self.initial_conditions),
+            lambda zeta: errors_only(structure, zeta, record, self.initial_conditions),
+            lambda zeta: bool(structure.stable(zeta)),
+            waves(structure, record),
+        )
+
+    def _fit(self, model: LocalModel, record: TimeRecord) -> float:
+        simulated = simulated_output(model.structure, model.zeta, record, self.initial_conditions)
+        spread = np.linalg.norm(record.output - record.output.mean()) or np.linalg.norm(record.output)
+        return float(100 * (1 - np.linalg.norm(record.output - simulated) / spread))
+
+    @classmethod
+    def example(cls) -> "PredictionError":
+        """A small one, for the conformance tests."""
+        return cls()
+
+
+def _require_information(structure: RationalStructure, record: TimeRecord, free: int) -> None:
+    require_same_sampling(structure, record)
+    unknowns = structure.size + free
+    if len(record) <= unknowns + 1:
+        raise NotIdentifiableError(
+            f"{len(record)} samples cannot determine {unknowns} unknowns and their accuracy; record longer or choose"
+            " lower orders",
+            "input",
+        )
+    for name, signal in (("input", record.input), ("output", record.output)):
+        if not np.any(signal):
+            raise NotIdentifiableError(f"the {name} is zero throughout, nothing can be learnt from it", name)
+
+
+def _outcome(structure: RationalStructure, solution: LeastSquaresSolution) -> Outcome:
+    if structure.n_noise and solution.cost <= 1e-26 * len(solution.residual):
+        advice = "the record holds no noise from which H could be learnt; leave C and D out (n_c = n_d = 0)"
+        return Outcome("not_identifiable", advice, solution.outcome.iterations)
+    return solution.outcome
+
+
+def _tests(structure: RationalStructure, solution: LeastSquaresSolution, record: TimeRecord) -> tuple[TestResult, ...]:
+    found = (
+        whiteness(structure, solution.x, solution.residual),
+        input_independence(structure, solution.residual, solution.jacobian, record.input),
+    )
+    return tuple(test for test in found if test is not None)
+
+
+def _rms(signal: FloatArray) -> float:
+    peak = float(np.abs(signal).max())
+    return peak * float(np.sqrt(np.mean((signal / peak) ** 2)))
