@@ -86,9 +86,10 @@ def optimised_phases(lines: Lines, generator: np.random.Generator) -> FloatArray
     started = np.vstack([schroeder_phases(short), drawn[: _share(CLIPPED, grid, 1, 32)]])
     kept = _lowest(short, clipped(short, started, grid), _share(DESCENDED, grid, 2, 8))
     found = np.array([norm_descent(short, phases, grid) for phases in kept])
-    few = np.count_nonzero(short.free) <= FEW_LINES
-    found = np.vstack([found, drawn[:8]]) if few else _lowest(short, found, 2)
-    return np.asarray(_lowest(short, np.array([polished(short, phases) for phases in found]), 1)[0], dtype=np.float64)
+    if np.count_nonzero(short.free) <= FEW_LINES:
+        found = np.array([polished(short, phases, iterations=15) for phases in np.vstack([found, drawn[:8]])])
+    finished = np.array([polished(short, phases) for phases in _lowest(short, found, 2)])
+    return np.asarray(_lowest(short, finished, 1)[0], dtype=np.float64)
 
 
 def _descent_grid(lines: Lines) -> int:

@@ -11,7 +11,7 @@ from oed.realisation.lines import signal_line_energies
 from oed.realisation.multisine import crest_factor, interpolated, multisine
 from oed.realisation.realised_signal import RealisedSignal
 
-LONGEST_NOISE = 4_000_000  # samples of noise in one record; a longer one is kept in memory as a multisine only
+LONGEST_NOISE = 4_000_000  # samples of noise in one record; a multisine repeats its period and may be longer
 INTERPOLATION = 4  # points a sample at which the peak between samples is looked for
 
 Method = Literal["multisine", "filtered_noise"]
