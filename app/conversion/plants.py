@@ -94,9 +94,7 @@ def structure_and_dependence(plant: PlantRequest) -> tuple[RationalStructure, Pa
     names = [variable.name for variable in plant.scheduling_variables]
     if len(set(names)) < len(names):
         raise RangeError("two scheduling variables have the same name", "scheduling_variables")
-    return structure, parameter_dependence(
-        structure, plant.scheduling_variables, plant.basis, plant.coefficient_bases
-    )
+    return structure, parameter_dependence(structure, plant.scheduling_variables, plant.basis, plant.coefficient_bases)
 
 
 def lpv_model(

@@ -55,13 +55,12 @@ class ExperimentRequest(
     """A time record or a frequency response, told apart by `kind`."""
 
 
-class SignalUnderstood(CamelModel):
-    """What was understood of the input or the output."""
+class FileFields(ExperimentFields):
+    """What is stated beside an uploaded file; it goes before what the file says."""
 
-    rms: Double | None = Field(description="root mean square")
-    minimum: Double | None
-    maximum: Double | None
-    notes: list[str] = Field(default_factory=list, description="saturation, trend, and what else was seen")
+    sample_time_seconds: Positive | None = Field(default=None, description="needed when the file has no time")
+    period_samples: Annotated[Integer, Field(ge=2)] | None = Field(default=None, description="samples in one period")
+    variable_group: Text = Field(default="", description="structure of a mat file that holds the arrays, e.g. data.run1")
 
 
 class Understanding(CamelModel):
@@ -74,11 +73,7 @@ class Understanding(CamelModel):
     frequency_count: Integer = Field(description="frequencies that are excited, or at which the response is given")
     minimum_frequency_rad_per_second: Double | None
     maximum_frequency_rad_per_second: Double | None
-    excited_frequencies_rad_per_second: Values | None = Field(description="excited lines of a periodic input")
     noise_level: Double | None = Field(description="standard deviation of the output's noise; null if not determined")
-    signal_to_noise_decibel: Double | None
-    input: SignalUnderstood | None
-    output: SignalUnderstood | None
     warnings: list[str] = Field(description="what may spoil an identification")
 
 
@@ -92,6 +87,7 @@ class Experiment(ExperimentFields):
     kind: Literal["timeRecord", "frequencyResponse"]
     sample_time_seconds: Double | None = Field(description="null for a frequency response in continuous time")
     variance_known: bool = Field(description="whether variances came with the frequency response")
+    variance_degrees_of_freedom: Double | None = Field(description="of these variances; null when known exactly")
     source: Literal["json", "csv", "npz", "mat"] = Field(description="how the data came")
     file_name: str | None = Field(default=None, description="name of the uploaded file")
     understood: Understanding

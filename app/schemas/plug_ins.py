@@ -54,7 +54,7 @@ class PlugInFamily:
 
 def named_union(name: str, members: Iterable[type[Any]], discriminator: str) -> Any:
     """A union with a name of its own in the OpenAPI document; one member needs no discriminator."""
-    every = tuple(members)
+    every = tuple(members) or (PlugInDocument,)
     if len(every) == 1:
         return TypeAliasType(name, every[0])  # type: ignore[misc, valid-type]
     union = typing.Annotated[typing.Union[every], Field(discriminator=discriminator)]  # noqa: UP007

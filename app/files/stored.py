@@ -1,0 +1,40 @@
+"""Kept arrays as files to download."""
+
+from collections.abc import Mapping
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.files import csv_file, mat_writer, npz_file, wav_file
+
+Format = Literal["csv", "npz", "mat"]
+SignalFormat = Literal["csv", "npz", "mat", "wav"]
+MEDIA_TYPES = {
+    "csv": "text/csv",
+    "npz": "application/octet-stream",
+    "mat": "application/octet-stream",
+    "wav": "audio/wav",
+}
+
+
+def arrays_file(arrays: Mapping[str, NDArray[Any]], file_format: Format) -> bytes:
+    """Arrays of one length (numbers beside them are repeated in csv) as a file; complex ones are split in csv."""
+    if file_format == "npz":
+        return npz_file.write(dict(arrays))
+    if file_format == "mat":
+        return mat_writer.write(arrays)
+    columns = {}
+    length = max(array.size for array in arrays.values())
+    for name, array in arrays.items():
+        full = np.broadcast_to(array, length)
+        if np.iscomplexobj(full):
+            columns |= {f"{name}Re": full.real, f"{name}Im": full.imag}
+        else:
+            columns[name] = full
+    return csv_file.write(columns)
+
+
+def wav(signal: NDArray[np.float64], sample_time: float) -> bytes:
+    """A signal as WAV; see `app.files.wav_file`."""
+    return wav_file.write(signal, sample_time)

@@ -1,0 +1,14 @@
+"""The catalogue of estimators, targets, spectrum families and basis functions."""
+
+from fastapi import APIRouter
+
+from app.schemas.catalogue import Catalogue
+from app.services.catalogue import catalogue
+
+router = APIRouter(prefix="/catalogue", tags=["catalogue"])
+
+
+@router.get("")
+def get_catalogue() -> Catalogue:
+    """What estimators, targets, spectrum families and basis functions there are, with their options and units."""
+    return catalogue()

@@ -1,0 +1,111 @@
+"""Experiments: bring data in, look at it, take it out."""
+
+from typing import Annotated, Any
+
+from fastapi import APIRouter, File, Form, Query, Response, UploadFile
+from fastapi.exceptions import RequestValidationError
+from pydantic import ValidationError
+
+from app.dependencies import ContainerDependency, Cursor, IdempotencyKey, Limit, ResourcesDependency
+from app.files.stored import MEDIA_TYPES, Format
+from app.routers.downloads import FILE, file_response
+from app.schemas.experiments import Experiment, ExperimentData, ExperimentList, ExperimentRequest, FileFields
+from app.schemas.jobs import Job
+from app.services import experiment_data, experiments
+from app.services.jobs import accepted
+
+router = APIRouter(prefix="/experiments", tags=["experiments"])
+
+Finite = Annotated[float, Form(allow_inf_nan=False)]
+Upload = Annotated[UploadFile, File(description="a .csv with a header line, .npz or .mat (level 5) file")]
+
+
+@router.post("", status_code=202)
+def create_experiment(
+    body: ExperimentRequest, container: ContainerDependency, response: Response, key: IdempotencyKey = None
+) -> Job:
+    """Bring in a time record or a frequency response as JSON."""
+    return accepted(experiments.submit(container, body, key), response)
+
+
+@router.post("/files", status_code=202)
+def upload_experiment(
+    container: ContainerDependency,
+    response: Response,
+    file: Upload,
+    plant_id: Annotated[str, Form(alias="plantId", description="the plant that was measured")],
+    operating_point: Annotated[
+        list[Finite], Form(alias="operatingPoint", description="one value a scheduling variable")
+    ],
+    name: Annotated[str, Form()] = "",
+    description: Annotated[str, Form()] = "",
+    design_id: Annotated[str | None, Form(alias="designId", description="the design that is carried out")] = None,
+    sample_time: Annotated[
+        float | None,
+        Form(alias="sampleTimeSeconds", allow_inf_nan=False, description="needed when the file has no time"),
+    ] = None,
+    period: Annotated[int | None, Form(alias="periodSamples", description="samples in one period")] = None,
+    group: Annotated[
+        str, Form(alias="variableGroup", description="structure of a mat file that holds the arrays, e.g. data.run1")
+    ] = "",
+    key: IdempotencyKey = None,
+) -> Job:
+    """Bring in a file; its columns or arrays are found by their names.
+
+    A time record has input, output and time (or state sampleTimeSeconds). A frequency response has
+    frequenciesRadPerSecond (or frequencyHz), response (or responseRe and responseIm) and, where known, variance.
+    """
+    stated = _checked(
+        {
+            "plantId": plant_id,
+            "operatingPoint": operating_point,
+            "name": name,
+            "description": description,
+            "designId": design_id,
+            "sampleTimeSeconds": sample_time,
+            "periodSamples": period,
+            "variableGroup": group,
+        }
+    )
+    record = experiments.submit_file(container, stated, file.file.read(), file.filename or "", key)
+    return accepted(record, response)
+
+
+def _checked(form: dict[str, Any]) -> FileFields:
+    try:
+        return FileFields.model_validate(form)
+    except ValidationError as error:
+        failures = [{**failure, "loc": ("body", *failure["loc"])} for failure in error.errors()]
+        raise RequestValidationError(failures, body=form) from None
+
+
+@router.get("")
+def list_experiments(
+    resources: ResourcesDependency,
+    plant_id: Annotated[str | None, Query(alias="plantId", max_length=64, description="only of this plant")] = None,
+    limit: Limit = 50,
+    cursor: Cursor = None,
+) -> ExperimentList:
+    """Experiments, newest first."""
+    return experiments.page(resources, plant_id, limit, cursor)
+
+
+@router.get("/{experimentId}")
+def get_experiment(experimentId: str, resources: ResourcesDependency) -> Experiment:
+    """One experiment, with what was understood of it."""
+    return experiments.get(resources, experimentId)
+
+
+@router.get("/{experimentId}/data")
+def get_experiment_data(experimentId: str, container: ContainerDependency) -> ExperimentData:
+    """The arrays of an experiment as JSON."""
+    return experiment_data.as_document(container, experimentId)
+
+
+@router.get("/{experimentId}/file", response_class=Response, responses=FILE)
+def get_experiment_file(
+    experimentId: str, container: ContainerDependency, format: Annotated[Format, Query()] = "npz"
+) -> Response:
+    """The arrays of an experiment as a file that can be brought in again."""
+    content = experiment_data.as_file(container, experimentId, format)
+    return file_response(content, f"experiment-{experimentId}.{format}", MEDIA_TYPES[format])

@@ -1,0 +1,179 @@
+"""Designs: which experiments reach the accuracy asked for with the least input energy."""
+
+from typing import TYPE_CHECKING, Annotated, Literal
+
+from pydantic import Field
+
+from app.arrays import Matrix, Vector
+from app.schemas.common import CamelModel, Double, Integer, Timestamp
+from app.schemas.experiments import Identifier
+from app.schemas.families import AccuracyTarget, SpectrumFamily
+from app.schemas.models import OutcomeDocument
+from app.schemas.plants import LongText, OperatingPoint, Positive, Text
+from app.schemas.plug_ins import named_union
+
+MAX_POINTS = 20_000
+
+
+class PointGrid(CamelModel):
+    """Operating points one by one."""
+
+    kind: Literal["grid"]
+    points: Annotated[list[OperatingPoint], Field(min_length=1, max_length=MAX_POINTS)]
+
+
+class GridAxis(CamelModel):
+    """Equidistant values of one scheduling variable."""
+
+    minimum: Double
+    maximum: Double
+    count: Annotated[Integer, Field(ge=1, le=MAX_POINTS)]
+
+
+class AxesGrid(CamelModel):
+    """All combinations of equidistant values, one axis a scheduling variable."""
+
+    kind: Literal["gridAxes"]
+    axes: Annotated[list[GridAxis], Field(min_length=1, max_length=10)]
+
+
+class Box(CamelModel):
+    """Any operating point between two corners; a grid is refined where it pays."""
+
+    kind: Literal["box"]
+    minimum: OperatingPoint
+    maximum: OperatingPoint
+    starting_count: Annotated[Integer, Field(ge=2, le=101)] = Field(
+        default=17, description="values a scheduling variable in the grid that the search starts from"
+    )
+
+
+if TYPE_CHECKING:
+    OperatingPoints = PointGrid | AxesGrid | Box
+else:
+    OperatingPoints = named_union("OperatingPoints", (PointGrid, AxesGrid, Box), "kind")
+
+
+class Band(CamelModel):
+    """Frequencies that may be excited."""
+
+    minimum_rad_per_second: Annotated[Double, Field(ge=0)]
+    maximum_rad_per_second: Positive
+
+
+class PointCap(CamelModel):
+    """The most energy at one operating point."""
+
+    operating_point: OperatingPoint
+    energy: Positive = Field(description="Σ u(t)², in the unit of the input squared")
+
+
+class EnergyCaps(CamelModel):
+    """The most input energy that is allowed at operating points."""
+
+    default: Positive | None = Field(default=None, description="at every point without a cap of its own; null: none")
+    per_point: list[PointCap] = Field(default_factory=list)
+
+
+class DesignRequest(CamelModel):
+    """What accuracy is asked for, and what is allowed to reach it."""
+
+    plant_id: Identifier
+    model_id: Identifier = Field(description="what is known of the plant now")
+    name: Text = ""
+    description: LongText = ""
+    operating_points: OperatingPoints = Field(description="where experiments may be done")
+    excluded_points: list[OperatingPoint] = Field(default_factory=list, description="where they must not be done")
+    targets: Annotated[list[AccuracyTarget], Field(min_length=1, max_length=100)]
+    spectrum_family: SpectrumFamily = Field(description="what kind of input spectra")
+    samples: Annotated[Integer, Field(ge=1, le=100_000_000)] = Field(
+        description="samples of each local experiment; raised when the noise model needs more"
+    )
+    sample_time_seconds: Positive | None = Field(
+        default=None, description="of the input to be played, for plants in continuous time"
+    )
+    band: Band | None = Field(default=None, description="frequencies that may be excited; null: all")
+    energy_caps: EnergyCaps | None = None
+    use_prior_information: bool = Field(
+        default=False, description="count the accuracy that the model already has, and design what is missing"
+    )
+    tolerance: Annotated[Double, Field(ge=1e-8, le=0.1)] = Field(
+        default=1e-4, description="relative gap between energy and lower bound that is certified"
+    )
+
+
+class LineSpectrumDocument(CamelModel):
+    """Energy on single frequencies."""
+
+    kind: Literal["lines"]
+    frequencies_rad_per_second: Vector
+    energies: Vector = Field(description="Σ u(t)² of each line")
+    period_samples: Integer = Field(description="samples of the period that holds these lines")
+
+
+class FirSpectrumDocument(CamelModel):
+    """N Φ(ω) = c0 + 2 Σ c_i cos(iωT): the spectrum of white noise through an FIR filter, in units of energy."""
+
+    kind: Literal["fir"]
+    coefficients: Vector = Field(description="c0 … cL; c0 is the energy")
+
+
+if TYPE_CHECKING:
+    Spectrum = LineSpectrumDocument | FirSpectrumDocument
+else:
+    Spectrum = named_union("Spectrum", (LineSpectrumDocument, FirSpectrumDocument), "kind")
+
+
+class SpectrumCurve(CamelModel):
+    """A spectrum for plotting: energies of lines, or a density (per rad/sample, two-sided) over a grid."""
+
+    frequencies_rad_per_second: Vector
+    values: Vector
+
+
+class DesignedExperimentDocument(CamelModel):
+    """What to do at one operating point."""
+
+    operating_point: Vector
+    energy: Double = Field(description="Σ u(t)² over the experiment")
+    spectrum: Spectrum
+    curve: SpectrumCurve
+
+
+class BindingDocument(CamelModel):
+    """Something that the energy would be less without."""
+
+    kind: str = Field(description="target or cap")
+    description: str
+    multiplier: Double | None = Field(description="its price in the optimum")
+
+
+class Design(CamelModel):
+    """The experiments that reach the accuracy asked for with the least energy, and the certificate of it."""
+
+    id: str
+    created_at: Timestamp
+    software_version: str
+    job_id: str | None
+    request: DesignRequest = Field(description="what was asked for")
+    plant_id: str
+    model_id: str
+    outcome: OutcomeDocument
+    sample_time_seconds: Double
+    experiments: list[DesignedExperimentDocument]
+    total_energy: Double | None = Field(description="Σ u(t)² over all experiments; null when infeasible")
+    lower_bound: Double | None = Field(description="no experiment at all within the request needs less energy")
+    gap: Double | None = Field(description="(totalEnergy − lowerBound)/totalEnergy")
+    samples: Integer = Field(description="samples of each local experiment, as many as the noise model needs")
+    required_samples: Double | None = Field(description="least number of samples for the accuracy of the noise model")
+    parameter_names: list[str]
+    expected_covariance: Matrix | None = Field(description="of theta after the experiments")
+    expected_standard_deviations: Vector | None
+    binding: list[BindingDocument]
+
+
+class DesignList(CamelModel):
+    """A page of designs."""
+
+    items: list[Design]
+    next_cursor: str | None = Field(default=None, description="give as `cursor` for the next page")

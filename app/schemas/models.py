@@ -1,0 +1,146 @@
+"""Models: identified from experiments, or stated."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from app.arrays import ComplexVector, Matrix, Vector
+from app.schemas.common import CamelModel, Double, Integer, Timestamp
+from app.schemas.experiments import Identifier
+from app.schemas.families import LocalEstimator, LpvEstimator, SpectralEstimator
+from app.schemas.plants import CoefficientBasis, LongText, ProductBasisDocument, Structure, Text
+
+
+class ModelRequest(CamelModel):
+    """Which experiments to identify a model from, and how."""
+
+    plant_id: Identifier
+    name: Text = ""
+    description: LongText = ""
+    experiment_ids: Annotated[list[Identifier], Field(min_length=1, max_length=1000)] = Field(
+        description="experiments of this plant; several may share an operating point"
+    )
+    local_estimator: LocalEstimator = Field(description="how the model of one operating point is found")
+    lpv_estimator: LpvEstimator = Field(description="how the parameter-varying model is found")
+    spectral_estimator: SpectralEstimator | None = Field(
+        default=None,
+        description="how time records become frequency responses, when the local estimator needs those",
+    )
+    structure: Structure | None = Field(default=None, description="in place of the structure of the plant")
+    basis: ProductBasisDocument | None = Field(default=None, description="in place of the basis of the plant")
+    coefficient_bases: list[CoefficientBasis] | None = Field(default=None, description="in place of those of the plant")
+    parent_model_id: Identifier | None = Field(default=None, description="the model that this one is a new version of")
+
+
+class StatedModelRequest(CamelModel):
+    """A model whose parameters are stated, from physics or from earlier work."""
+
+    plant_id: Identifier
+    name: Text = ""
+    description: LongText = ""
+    theta: Vector = Field(description="parameters, in the order of the plant's parameterNames")
+    noise_variance: Annotated[Double, Field(ge=0)] = Field(description="variance of the white noise e")
+    covariance: Matrix | None = Field(default=None, description="covariance of theta; null when it is not known")
+
+
+class OutcomeDocument(CamelModel):
+    """How a computation ended."""
+
+    status: Literal["converged", "not_converged", "not_identifiable", "infeasible"]
+    advice: str = Field(description="what to change when it did not converge")
+    iterations: Integer
+
+
+class TestDocument(CamelModel):
+    """A statistic held against its distribution; a small p-value speaks against the model."""
+
+    __test__ = False
+
+    name: str
+    statistic: Double | None
+    degrees_of_freedom: Double | None
+    p_value: Double | None
+
+
+class LocalModelDocument(CamelModel):
+    """The model of one operating point."""
+
+    operating_point: Vector
+    zeta: Vector = Field(description="coefficients, in the order of coefficientNames")
+    standard_deviations: Vector | None = Field(description="of zeta; null when the data do not determine them")
+    covariance: Matrix | None
+    noise_variance: Double | None
+    outcome: OutcomeDocument
+    tests: list[TestDocument]
+    fit_percent: Double | None = Field(description="100 (1 − ‖y − ŷ‖/‖y − mean(y)‖)")
+    relative_error: Double | None = Field(description="‖Ĝ − G‖/‖Ĝ‖ over the frequencies; null for time records")
+    stable: bool
+    experiment_id: str | None = Field(description="the experiment that it was fitted to")
+
+
+class PolesAtPoint(CamelModel):
+    """Poles at one operating point."""
+
+    operating_point: Vector
+    poles: ComplexVector = Field(description="in the z-plane, or in rad/s in continuous time")
+
+
+class Model(CamelModel):
+    """A parameter-varying model with its accuracy and where it came from."""
+
+    id: str
+    created_at: Timestamp
+    software_version: str
+    plant_id: str
+    job_id: str | None
+    name: Text
+    description: LongText
+    origin: Literal["identified", "stated"]
+    structure: Structure
+    basis: ProductBasisDocument
+    coefficient_bases: list[CoefficientBasis]
+    coefficient_names: list[str]
+    parameter_names: list[str]
+    theta: Vector
+    standard_deviations: Vector | None = Field(description="of theta; null when they are not known")
+    covariance: Matrix | None = Field(description="of theta; null when it is not known")
+    noise_variance: Double
+    outcome: OutcomeDocument
+    tests: list[TestDocument]
+    local_models: list[LocalModelDocument]
+    stable: bool = Field(description="at every operating point of a grid over the range")
+    poles: list[PolesAtPoint] = Field(description="over the range, for one scheduling variable")
+    local_estimator: LocalEstimator | None
+    lpv_estimator: LpvEstimator | None
+    spectral_estimator: SpectralEstimator | None
+    experiment_ids: list[str]
+    design_id: str | None = Field(description="the design that all its experiments carry out, if it is one")
+    parent_id: str | None = Field(description="the model that this one is a new version of")
+    seed: Integer | None = Field(description="seed of what was drawn at random; null when nothing was")
+
+
+class ModelList(CamelModel):
+    """A page of models."""
+
+    items: list[Model]
+    next_cursor: str | None = Field(default=None, description="give as `cursor` for the next page")
+
+
+class ModelFrequencyResponse(CamelModel):
+    """The frequency response of a model at one operating point, with 95 % bands to first order in the covariance."""
+
+    model_id: str
+    operating_point: Vector
+    frequencies_rad_per_second: Vector
+    response: ComplexVector
+    magnitude: Vector
+    magnitude_lower95: Vector | None = Field(description="null when the covariance is not known")
+    magnitude_upper95: Vector | None
+    phase_rad: Vector = Field(description="unwrapped")
+    phase_lower95_rad: Vector | None
+    phase_upper95_rad: Vector | None
+    real_variance: Vector | None
+    imaginary_variance: Vector | None
+    real_imaginary_covariance: Vector | None
+
+

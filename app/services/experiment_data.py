@@ -1,0 +1,65 @@
+"""The arrays of experiments, on their way out."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.arrays import ComplexVector
+from app.container import Container
+from app.conversion.experiments import kept_measurement
+from app.files.stored import Format, arrays_file
+from app.schemas.experiments import (
+    Experiment,
+    ExperimentData,
+    FrequencyResponseData,
+    TimeRecordData,
+)
+from app.services.experiments import KIND, experiment_of
+from identification.signals import Measurement, TimeRecord
+
+
+def measurement_of(container: Container, experiment_id: str) -> tuple[Experiment, Measurement]:
+    """An experiment and its measurement."""
+    resource = container.resources.get(KIND, experiment_id)
+    assert resource.arrays is not None, "experiments have arrays"
+    experiment = experiment_of(resource)
+    return experiment, kept_measurement(experiment, container.arrays.get(resource.arrays))
+
+
+def as_document(container: Container, experiment_id: str) -> ExperimentData:
+    """The arrays as lists."""
+    _, data = measurement_of(container, experiment_id)
+    if isinstance(data, TimeRecord):
+        return ExperimentData(
+            TimeRecordData(
+                kind="timeRecord",
+                sample_time_seconds=data.sample_time,
+                input=data.input.tolist(),
+                output=data.output.tolist(),
+            )
+        )
+    return ExperimentData(
+        FrequencyResponseData(
+            kind="frequencyResponse",
+            frequencies_rad_per_second=data.frequencies.tolist(),
+            response=ComplexVector.of(data.response),
+            variance=None if data.variance is None else data.variance.tolist(),
+        )
+    )
+
+
+def as_file(container: Container, experiment_id: str, file_format: Format) -> bytes:
+    """The arrays as a file that can be brought in again."""
+    _, data = measurement_of(container, experiment_id)
+    arrays: dict[str, NDArray[Any]]
+    if isinstance(data, TimeRecord):
+        time = np.arange(len(data)) * data.sample_time
+        arrays = {"time": time, "input": data.input, "output": data.output}
+    else:
+        arrays = {"frequenciesRadPerSecond": data.frequencies, "response": data.response}
+        if data.variance is not None:
+            arrays["variance"] = data.variance
+        if data.sample_time is not None:
+            arrays["sampleTimeSeconds"] = np.array(data.sample_time)
+    return arrays_file(arrays, file_format)

@@ -1,0 +1,88 @@
+"""A small HTTP client of the service, for tests that look at what it answers."""
+
+import time
+from dataclasses import dataclass
+from typing import Any
+
+import httpx
+
+Json = dict[str, Any]
+
+
+class JobFailedError(AssertionError):
+    """A job did not succeed; `problem` says why."""
+
+    def __init__(self, job: Json) -> None:
+        super().__init__(f"the job {job['kind']} {job['state']}: {job['problem']}")
+        self.problem: Json = job["problem"]
+
+
+@dataclass
+class Api:
+    """Requests to one server. Answers that are no success raise AssertionError with the problem in it."""
+
+    url: str
+
+    def __post_init__(self) -> None:
+        self.http = httpx.Client(base_url=f"{self.url}/v1", timeout=60.0)
+
+    def get(self, path: str, **query: Any) -> Json:
+        return self._json(self.http.get(self._path(path), params=query))
+
+    def download(self, path: str, **query: Any) -> bytes:
+        answer = self.http.get(self._path(path), params=query)
+        assert answer.status_code == 200, answer.text
+        return answer.content
+
+    def post(self, path: str, body: Any) -> Json:
+        return self._json(self.http.post(self._path(path), json=body))
+
+    def made(self, path: str, body: Any, seconds: float = 120.0) -> Json:
+        """Start a job, wait for it, and get what it made; raises JobFailedError when it fails."""
+        return self.result(self.post(path, body), seconds)
+
+    def uploaded(self, name: str, content: bytes, seconds: float = 60.0, **fields: Any) -> Json:
+        """Bring in a file as an experiment."""
+        answer = self.http.post("/experiments/files", data=fields, files={"file": (name, content)})
+        return self.result(self._json(answer), seconds)
+
+    def result(self, job: Json, seconds: float) -> Json:
+        return self.get(self.finished(job, seconds)["result"]["href"])
+
+    def finished(self, job: Json, seconds: float = 120.0) -> Json:
+        """Wait for a job to succeed."""
+        end = time.monotonic() + seconds
+        while job["state"] in ("queued", "running"):
+            assert time.monotonic() < end, f"the job is not done after {seconds} s: {job}"
+            time.sleep(0.02)
+            job = self.get(f"/jobs/{job['id']}")
+        if job["state"] != "succeeded":
+            raise JobFailedError(job)
+        return job
+
+    def refused(self, path: str, body: Any) -> Json:
+        """The problem that a body is answered with; it must be a 4xx one."""
+        return self.problem(self.http.post(self._path(path), json=body))
+
+    @staticmethod
+    def problem(answer: httpx.Response) -> Json:
+        assert 400 <= answer.status_code < 500, (answer.status_code, answer.text)
+        assert answer.headers["content-type"].startswith("application/problem+json")
+        problem: Json = answer.json()
+        assert problem["status"] == answer.status_code
+        return problem
+
+    @staticmethod
+    def _path(path: str) -> str:
+        return path.removeprefix("/v1")
+
+    @staticmethod
+    def _json(answer: httpx.Response) -> Json:
+        assert answer.status_code in (200, 201, 202), (answer.status_code, answer.text)
+        result: Json = answer.json()
+        return result
+
+
+def pointers(problem: Json) -> list[str]:
+    """The fields that a problem points to."""
+    return [error["pointer"] for error in problem["errors"]]
