@@ -123,8 +123,12 @@ class RationalStructure:
         """Whether G is stable and H stable with a stable inverse, for ζ (…, n), as (…,)."""
         if not self.is_discrete:
             return np.asarray(np.all(self.poles(zeta).real < 0, axis=-1))
+        return np.asarray(self.radius(zeta) < 1)
+
+    def radius(self, zeta: FloatArray) -> FloatArray:
+        """The largest modulus of a root of A, C or D in the z-plane, for ζ (…, n), as (…,); discrete time only."""
         a, _, _, c, d = self.split(zeta)
-        return np.asarray(np.logical_and.reduce([np.all(abs(roots(x)) < 1, axis=-1) for x in (a, c, d)]))
+        return np.asarray(np.max([abs(roots(x)).max(axis=-1, initial=0.0) for x in (a, c, d)], axis=0))
 
     def _powers(self, omega: FloatArray) -> tuple[ComplexArray, ComplexArray]:
         numerator, denominator = np.arange(self.n_b + 1)[:, None], np.arange(self.n_a + 1)[:, None]

@@ -139,7 +139,7 @@ class _Bounds:
         solution = self
         if 0 < len(kept) < len(self.blocks):
             binding = np.argsort([-np.trace(price) for price in self.prices])[:ACTIVE_TARGETS]
-            weights = solve_master(kept, targets[np.sort(binding)], caps).weights
+            weights = [_semidefinite(w) for w in solve_master(kept, targets[np.sort(binding)], caps).weights]
             fewer = replace(self, energy=np.inf).with_primal(kept, weights, targets, caps)
             solution = fewer if fewer.gap <= max(tolerance, self.gap) else self
         return CertifiedSpectra(
@@ -197,6 +197,11 @@ def _with_violated(active: IntArray, blocks: Sequence[Block], master: MasterSolu
     slack = np.linalg.eigvalsh(_total(blocks, master.weights) - targets)[:, 0]
     missed = np.argsort(slack)[: ACTIVE_TARGETS // 2]
     return np.union1d(active, missed[slack[missed] < -1e-9])
+
+
+def _semidefinite(weight: FloatArray) -> FloatArray:
+    values, vectors = np.linalg.eigh(weight)
+    return np.asarray((vectors * np.maximum(values, 0.0)) @ vectors.T)
 
 
 def _total(blocks: Sequence[Block], weights: Sequence[FloatArray]) -> FloatArray:

@@ -76,7 +76,7 @@ def design(problem: DesignProblem, progress: Progress | None = None) -> Design:
         np.linalg.eigvalsh(missing)[:, -1] > 1e-9 * abs(targets[:, :k, :k]).max(initial=1e-300)
     )
     if len(open_targets) == 0:
-        return _described(problem, targets, (), (0.0, 0.0), (), 0)
+        return _described(problem, targets, (), (0.0, 0.0), np.zeros((k, k)), (), 0)
     problem_scaled = scaled(problem, missing[open_targets])
     if isinstance(problem_scaled, Outcome):
         return _unreachable(problem, problem_scaled)
@@ -86,7 +86,8 @@ def design(problem: DesignProblem, progress: Progress | None = None) -> Design:
     experiments = _experiments(problem_scaled, solution)
     binding = _binding(problem_scaled, solution, sources[open_targets])
     energies = (problem_scaled.unit * solution.energy, problem_scaled.unit * solution.lower_bound)
-    return _described(problem, targets, experiments, energies, binding, solution.iterations)
+    learnt = problem_scaled.information(solution.blocks, solution.weights)
+    return _described(problem, targets, experiments, energies, learnt, binding, solution.iterations)
 
 
 def _target_matrices(problem: DesignProblem) -> tuple[IntArray, FloatArray]:
@@ -131,6 +132,7 @@ def _described(
     targets: FloatArray,
     experiments: Sequence[DesignedExperiment],
     energies: tuple[float, float],
+    learnt: FloatArray,
     binding: tuple[Binding, ...],
     iterations: int,
 ) -> Design:
@@ -142,9 +144,7 @@ def _described(
     needed = required_samples(per_sample, targets[:, k:, k:] - problem.prior[k:, k:])
     samples = max(problem.samples, int(np.floor(needed)) + 1) if np.isfinite(needed) else problem.samples
     information = problem.prior.copy()
-    for experiment in experiments:
-        spectrum, point = experiment.spectrum, experiment.operating_point
-        information[:k, :k] += spectrum.information(problem.model, point, problem.step)
+    information[:k, :k] += learnt
     information[k:, k:] += samples * per_sample.sum(axis=0)
     return Design(
         _outcome(problem, gap, needed, iterations),

@@ -1,15 +1,15 @@
 """How much an experiment tells about θ, per unit of input energy and per sample."""
 
-from collections.abc import Callable
-
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy import fft
 
 from identification.arrays import ComplexArray, FloatArray
 from identification.errors import MisuseError
 from identification.models import LpvModel
 
-LARGEST_GRID = 2**17
+LARGEST_GRID = 2**18
+CONTINUOUS_GRID = 2**14
 
 
 def sensitivity(model: LpvModel, points: ArrayLike, omega: FloatArray) -> ComplexArray:
@@ -34,38 +34,46 @@ def noise_information(model: LpvModel, points: ArrayLike) -> FloatArray:
         return np.zeros((len(transfer), transfer.shape[2], transfer.shape[2]))
     zeta = model.coefficients(points)
 
-    def products(omega: FloatArray) -> FloatArray:
-        weighted = model.structure.noise_gradient(zeta, omega) / model.structure.noise_response(zeta, omega)[:, None, :]
-        return np.asarray(np.einsum("mif,mjf->mijf", weighted, weighted.conj()).real)
-
-    mean = _cosine_moments(products, model.structure.sample_time or 1.0, 0)[..., 0]
+    grid = _circle(model, points, 0, 1.0 if model.structure.sample_time is None else model.structure.sample_time)
+    weighted = model.structure.noise_gradient(zeta, grid) / model.structure.noise_response(zeta, grid)[:, None, :]
+    mean = _cosine_moments(np.swapaxes(weighted, 1, 2), 0)[:, 0]
     return np.asarray(np.swapaxes(transfer, 1, 2) @ mean @ transfer)
 
 
 def sensitivity_moments(model: LpvModel, points: ArrayLike, degree: int, sample_time: float) -> FloatArray:
-    """(1/2π) ∫ Re(a a*) cos(iΩ) dΩ, Ω = ω · sample_time in (−π, π), i = 0 … degree, as (M, k_G, k_G, degree + 1)."""
-
-    def products(omega: FloatArray) -> FloatArray:
-        a = sensitivity(model, points, omega)
-        return np.asarray(np.einsum("mfi,mfj->mijf", a, a.conj(), optimize=True).real)
-
-    return _cosine_moments(products, sample_time, degree)
+    """(1/2π) ∫ Re(a a*) cos(iΩ) dΩ, Ω = ω · sample_time in (−π, π), i = 0 … degree, as (M, degree + 1, k_G, k_G)."""
+    return _cosine_moments(sensitivity(model, points, _circle(model, points, degree, sample_time)), degree)
 
 
-def _cosine_moments(products: Callable[[FloatArray], FloatArray], sample_time: float, degree: int) -> FloatArray:
-    """Fourier cosine coefficients of an even function of ω, by the trapezoidal rule, refined until they settle."""
-    half, previous = max(128, 2 ** int(np.ceil(np.log2(degree + 1)) + 1)), None
-    while half <= LARGEST_GRID:
-        values = products(np.linspace(0.0, np.pi / sample_time, half + 1))
-        moments = np.fft.irfft(values, 2 * half, axis=-1)[..., : degree + 1]
-        if previous is not None and np.max(abs(moments - previous)) <= 1e-11 * np.max(abs(moments)):
-            return np.asarray(moments)
-        half, previous = 2 * half, moments
-    raise MisuseError(
-        "a pole or zero of the model lies so close to the unit circle that its information cannot be integrated; use"
-        " line spectra or exclude the operating points concerned",
-        "points",
-    )
+def _circle(model: LpvModel, points: ArrayLike, degree: int, sample_time: float) -> FloatArray:
+    """Frequencies from 0 to Nyquist on which the trapezoidal rule is exact to rounding in discrete time.
+
+    A rational function with poles of radius ρ < 1 has moments that fall as ρ^i, and the rule on N points folds the
+    moment N − i onto the i-th. Continuous-time responses are not rational in e^{jΩ}; a fixed fine grid serves.
+    """
+    if model.structure.is_discrete:
+        radius = float(model.structure.radius(model.coefficients(points)).max(initial=0.1))
+        count = degree + np.log(1e-16) / np.log(min(max(radius, 0.1), 1 - 1e-9))
+    else:
+        count = max(CONTINUOUS_GRID, 8 * degree)
+    if count > LARGEST_GRID:
+        raise MisuseError(
+            "a pole of the model lies so close to the unit circle that its information cannot be integrated; use line"
+            " spectra or exclude the operating points concerned",
+            "points",
+        )
+    return np.linspace(0.0, np.pi / sample_time, fft.next_fast_len(int(count / 2) + 8, real=True) + 1)
+
+
+def _cosine_moments(rows: ComplexArray, degree: int) -> FloatArray:
+    """Fourier cosine coefficients 0 … degree of Re(a a*) for a (M, F, k) on a grid from 0 to Nyquist, (M, ·, k, k)."""
+    upper = np.triu_indices(rows.shape[-1])
+    left, right = rows[..., upper[0]], rows[..., upper[1]]
+    products = left.real * right.real + left.imag * right.imag
+    moments = np.fft.irfft(products, 2 * (rows.shape[1] - 1), axis=1)[:, : degree + 1]
+    full = np.empty((*moments.shape[:2], rows.shape[-1], rows.shape[-1]))
+    full[..., upper[0], upper[1]] = full[..., upper[1], upper[0]] = moments
+    return full
 
 
 def require_stable(model: LpvModel, points: ArrayLike) -> None:

@@ -103,15 +103,8 @@ class _Layout:
         return [clarabel.NonnegativeConeT(self.scalars), *larger]
 
     def weights(self, x: FloatArray) -> list[FloatArray]:
-        """The weight of each block, cleaned of tiny negative eigenvalues."""
-        return [_semidefinite(smat(x[part], size)) for part, size in zip(self.slices, self.sizes, strict=True)]
-
-
-def _semidefinite(weight: FloatArray) -> FloatArray:
-    if len(weight) == 1:
-        return np.maximum(weight, 0.0)
-    values, vectors = np.linalg.eigh(weight)
-    return np.asarray((vectors * np.maximum(values, 0.0)) @ vectors.T)
+        """The weight of each block; an interior solution, positive up to the accuracy of the solver."""
+        return [smat(x[part], size) for part, size in zip(self.slices, self.sizes, strict=True)]
 
 
 def _information_columns(block: Block) -> FloatArray:

@@ -1,5 +1,6 @@
 """Units in which the design problem is well conditioned."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -7,7 +8,7 @@ import numpy as np
 from identification.arrays import FloatArray
 from identification.outcome import Outcome
 from oed.problem import DesignProblem
-from oed.spectra.family import Pricing
+from oed.spectra.family import Block, Pricing
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,6 +31,12 @@ class ScaledProblem:
     def tolerance(self) -> float:
         """Relative gap to be certified."""
         return self.original.tolerance
+
+    def information(self, blocks: Sequence[Block], weights: Sequence[FloatArray]) -> FloatArray:
+        """What the spectra tell about θ_G itself, (k_G, k_G)."""
+        inverse = np.linalg.inv(self.basis)
+        total = np.sum([block.total(weight) for block, weight in zip(blocks, weights, strict=True)], axis=0)
+        return np.asarray(self.unit * inverse.T @ total @ inverse)
 
     def priced(self, points: FloatArray) -> Pricing:
         """The family of the problem at other operating points (M, s), in the same units."""

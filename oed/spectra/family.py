@@ -9,7 +9,6 @@ from numpy.typing import ArrayLike
 
 from identification.arrays import FloatArray, IntArray
 from identification.models import LpvModel
-from identification.signals import OperatingPoint
 
 NEARLY = 0.97
 
@@ -37,9 +36,6 @@ class Spectrum(Protocol):
     @property
     def energy(self) -> float:
         """Σ_t u(t)² over the experiment."""
-
-    def information(self, model: LpvModel, point: OperatingPoint, sample_time: float) -> FloatArray:
-        """∫ Re(a a*) Φ, the information about θ_G that this spectrum gives at a point, (k_G, k_G)."""
 
     def line_energies(self, samples: int, sample_time: float) -> tuple[IntArray, FloatArray]:
         """(indices, energies) of the lines 2πi/(samples · sample_time) of a periodic signal, i = 0 … samples/2."""

@@ -10,11 +10,11 @@ from numpy.typing import ArrayLike
 from identification.arrays import FloatArray, IntArray
 from identification.errors import RangeError
 from identification.models import LpvModel
-from identification.signals import OperatingPoint
 from oed.information import sensitivity_moments
 from oed.spectra.family import NEARLY, Block, Offer
 
 MOST_NEW = 3
+NEGLIGIBLE = 1e-5
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,11 +34,6 @@ class FirSpectrum:
         lags = np.arange(len(self.coefficients))
         cosines = np.cos(np.outer(omega * self.sample_time, lags))
         return np.asarray(cosines @ (self.coefficients * np.where(lags == 0, 1.0, 2.0)))
-
-    def information(self, model: LpvModel, point: OperatingPoint, sample_time: float) -> FloatArray:
-        """c_0 M_0 + 2 Σ c_i M_i with the moments M_i of the sensitivity, (k_G, k_G)."""
-        twice = np.where(np.arange(len(self.coefficients)) == 0, 1.0, 2.0) * self.coefficients
-        return np.asarray(sensitivity_moments(model, [point], len(twice) - 1, sample_time)[0] @ twice)
 
     def line_energies(self, samples: int, sample_time: float) -> tuple[IntArray, FloatArray]:
         """The density sampled at the lines of a period of `samples`, scaled to the same energy."""
@@ -83,62 +78,75 @@ class FirSpectra:
 
 @dataclass(frozen=True, eq=False)
 class FirPricing:
-    """FIR filters h at M points: Φ = |h|², `moments` (M, k, k, L + 1); a block's shapes are orthonormal filters h."""
+    """FIR filters h at M points: Φ = |h|², `moments` (M, L + 1, k, k); a block's shapes are orthonormal filters h."""
 
     moments: FloatArray
     sample_time: float
 
     def flat(self) -> list[Block]:
         """White noise."""
-        impulse = np.eye(1, self.moments.shape[-1])
-        return [self._block(m, impulse) for m in range(len(self.moments))]
+        impulse = np.eye(1, self.moments.shape[1])
+        return self._blocks(dict.fromkeys(range(len(self.moments)), impulse))
 
     def best(
         self, prices: FloatArray, charges: FloatArray, blocks: Sequence[Block], weights: Sequence[FloatArray]
     ) -> Offer:
         """The leading eigenvalue of the Toeplitz matrix of tr(Z · moments); its eigenvectors join those in use."""
-        lags = np.einsum("ij,mijl->ml", prices, self.moments)
+        lags = self.moments.reshape(*self.moments.shape[:2], -1) @ prices.ravel()
         order = np.arange(lags.shape[1])
         values, vectors = np.linalg.eigh(lags[:, abs(order[:, None] - order)])
-        in_use = {block.point: _active(block, weight) for block, weight in zip(blocks, weights, strict=True)}
-        offered = []
-        for m, value in enumerate(values):
-            kept = in_use.get(m, np.zeros((0, len(order))))
-            good_enough = max(NEARLY * charges[m], NEARLY * value[-1])
-            if len(kept) or value[-1] > good_enough:
-                leading = vectors[m][:, value > good_enough][:, -MOST_NEW:]
-                offered.append(self._block(m, _orthonormal(kept, leading.T)))
-        return Offer(values[:, -1], offered)
+        worth = values[:, -1]
+        shapes = {block.point: _active(block, weight) for block, weight in zip(blocks, weights, strict=True)}
+        shapes = {point: kept for point, kept in shapes.items() if len(kept)}
+        for m in np.flatnonzero(worth > NEARLY * charges).tolist():
+            new = vectors[m][:, values[m] > NEARLY * max(charges[m], worth[m])][:, -MOST_NEW:].T
+            shapes[m] = _orthonormal(shapes[m], new) if m in shapes else new
+        return Offer(worth, self._blocks(shapes))
 
     def transformed(self, basis: FloatArray) -> "FirPricing":
         """The same for the parameters basis⁻¹ θ_G."""
-        return FirPricing(np.einsum("ai,mabl,bj->mijl", basis, self.moments, basis, optimize=True), self.sample_time)
+        return FirPricing(basis.T @ self.moments @ basis, self.sample_time)
 
     def spectrum(self, blocks: Sequence[Block], weights: Sequence[FloatArray]) -> FirSpectrum:
         """c_i, the i-th autocorrelation of the filters, summed with their weights."""
-        pairs = zip(blocks, weights, strict=True)
-        lags = sum(np.einsum("ab,abl->l", weight, _correlations(block.shapes)) for block, weight in pairs)
+        lags = _correlations(np.vstack([block.shapes for block in blocks]), [len(block.shapes) for block in blocks])
+        lags = np.concatenate([weight.ravel() for weight in weights]) @ lags
         return FirSpectrum(np.asarray(lags), self.sample_time)
 
-    def _block(self, point: int, shapes: FloatArray) -> Block:
-        lags = _correlations(shapes) * np.where(np.arange(shapes.shape[1]) == 0, 1.0, 2.0)
-        return Block(point, shapes, np.einsum("abl,ijl->abij", lags, self.moments[point], optimize=True))
+    def _blocks(self, shapes: dict[int, FloatArray]) -> list[Block]:
+        if not shapes:
+            return []
+        taps, k = self.moments.shape[1:3]
+        sizes = [len(filters) for filters in shapes.values()]
+        lags = _correlations(np.vstack(list(shapes.values())), sizes)
+        lags[:, 1:] *= 2
+        made, start = [], 0
+        for (point, filters), r in zip(shapes.items(), sizes, strict=True):
+            information = lags[start : start + r * r] @ self.moments[point].reshape(taps, -1)
+            made.append(Block(point, filters, information.reshape(r, r, k, k)))
+            start += r * r
+        return made
 
 
-def _correlations(shapes: FloatArray) -> FloatArray:
-    """Symmetric correlations Σ_s (h_a[s] h_b[s+i] + h_b[s] h_a[s+i])/2, as (r, r, L + 1)."""
+def _correlations(shapes: FloatArray, sizes: Sequence[int]) -> FloatArray:
+    """Σ_s (h_a[s] h_b[s+i] + h_b[s] h_a[s+i])/2, i = 0 … L, of all pairs (a, b) within groups of rows: (pairs, L + 1)."""
+    starts = np.cumsum([0, *sizes[:-1]])
+    left = np.concatenate([np.repeat(np.arange(r), r) + s for s, r in zip(starts, sizes, strict=True)])
+    right = np.concatenate([np.tile(np.arange(r), r) + s for s, r in zip(starts, sizes, strict=True)])
     taps = shapes.shape[1]
-    spectra = np.fft.rfft(shapes, 2 * taps, axis=1)
-    products = (spectra[:, None] * spectra[None].conj()).real
-    return np.asarray(np.fft.irfft(products, 2 * taps, axis=-1)[..., :taps])
+    transforms = np.fft.rfft(shapes, 2 * taps, axis=1)
+    products = transforms.real[left] * transforms.real[right] + transforms.imag[left] * transforms.imag[right]
+    return np.fft.irfft(products, 2 * taps, axis=-1)[:, :taps]
 
 
 def _active(block: Block, weight: FloatArray) -> FloatArray:
+    if len(weight) == 1:
+        return block.shapes if weight[0, 0] > NEGLIGIBLE else block.shapes[:0]
     values, vectors = np.linalg.eigh(weight)
-    return np.asarray(vectors[:, values > 1e-7 * max(values[-1], 1e-12)].T @ block.shapes)
+    return np.asarray(vectors[:, values > NEGLIGIBLE].T @ block.shapes)
 
 
 def _orthonormal(kept: FloatArray, new: FloatArray) -> FloatArray:
-    """An orthonormal basis of the rows of both."""
-    _, values, rows = np.linalg.svd(np.vstack([kept, new]), full_matrices=False)
-    return np.asarray(rows[values > 1e-8])
+    """The orthonormal rows of `kept`, and what the rows of `new` have beyond them, made orthonormal."""
+    orthonormal, triangle = np.linalg.qr(np.vstack([kept, new]).T)
+    return np.asarray(orthonormal[:, abs(np.diagonal(triangle)) > 1e-7].T)

@@ -10,7 +10,6 @@ from numpy.typing import ArrayLike
 from identification.arrays import ComplexArray, FloatArray, IntArray
 from identification.errors import RangeError
 from identification.models import LpvModel
-from identification.signals import OperatingPoint
 from oed.information import sensitivity
 from oed.spectra.family import NEARLY, Block, Offer
 
@@ -28,11 +27,6 @@ class LineSpectrum:
     def energy(self) -> float:
         """Σ_t u(t)² over the experiment."""
         return float(self.energies.sum())
-
-    def information(self, model: LpvModel, point: OperatingPoint, sample_time: float) -> FloatArray:
-        """Σ_i E_i Re(a a*) at the lines, (k_G, k_G)."""
-        a = sensitivity(model, [point], self.frequencies)[0]
-        return np.asarray(((a.T * self.energies) @ a.conj()).real)
 
     def line_energies(self, samples: int, sample_time: float) -> tuple[IntArray, FloatArray]:
         """The lines of a period of `samples`; raises RangeError unless every designed line is one of them."""

@@ -1,0 +1,76 @@
+"""The design as the paper writes it, one large linear matrix inequality: the reference for the certified solver.
+
+Slow, and without a certificate of its own; needs cvxpy, which nothing else here does.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import cvxpy
+import numpy as np
+
+from identification.arrays import FloatArray
+from identification.errors import MisuseError
+from identification.outcome import Outcome
+from oed.information import sensitivity_moments
+from oed.problem import DesignProblem
+from oed.spectra.fir import FirSpectra
+
+
+@dataclass(frozen=True, eq=False)
+class DirectDesign:
+    """Energy J, and the coefficients N_p c_{m,i} (M, L + 1) of the spectra; NaN-free only when the outcome is ok."""
+
+    outcome: Outcome
+    total_energy: float
+    coefficients: FloatArray
+
+
+def direct_design(problem: DesignProblem) -> DirectDesign:
+    """Solve, over the coefficients of FIR spectra at all grid points at once,
+
+        min Σ_m c_{m,0}   s.t.   Σ_m (c_{m,0} X_{m,0} + 2 Σ_i c_{m,i} X_{m,i}) + P_G⁻¹ ⪰ R_j,   c_{m,0} ≤ α_m,
+        Φ_m ≥ 0 as  c_{m,i} = Σ_s [Q_m]_{s,s+i},  Q_m ⪰ 0                          [Ghosh2018, (15), (19), (20)]
+
+    with X_{m,i} = (1/2π) ∫ Re(a a*) cos(iω) dω and c in units of energy. Raises MisuseError for other families than
+    FIR spectra and for a box.
+    """
+    if not isinstance(problem.family, FirSpectra) or problem.box:
+        raise MisuseError("the inequality as written is for FIR spectra on a grid; choose these", "family")
+    degree, k = problem.family.degree, problem.model.plant_size
+    moments = sensitivity_moments(problem.model, problem.points, degree, problem.step)
+    targets = np.concatenate([target.matrices(problem.model) for target in problem.targets])[:, :k, :k]
+    scale = np.sqrt(np.max(np.diagonal(targets, axis1=1, axis2=2), axis=0))
+    scale = np.where(scale > 0, scale, 1.0)
+    moments = moments / np.outer(scale, scale)
+    energy = _energy_scale(moments, targets / np.outer(scale, scale))
+    coefficients = cvxpy.Variable((len(problem.points), degree + 1))
+    information = _information(moments * energy, coefficients)
+    prior = problem.prior[:k, :k] / np.outer(scale, scale)
+    constraints = [information + prior >> target / np.outer(scale, scale) for target in targets]
+    constraints += [positive for m in range(len(problem.points)) for positive in _positive(coefficients[m], degree)]
+    constraints += [coefficients[m, 0] <= cap / energy for m, cap in enumerate(problem.limits) if np.isfinite(cap)]
+    task = cvxpy.Problem(cvxpy.Minimize(cvxpy.sum(coefficients[:, 0])), constraints)
+    task.solve(solver=cvxpy.CLARABEL)
+    if coefficients.value is None:
+        return DirectDesign(Outcome("infeasible", f"the solver answers {task.status}"), np.inf, np.zeros((0, 0)))
+    return DirectDesign(Outcome("converged"), float(task.value) * energy, coefficients.value * energy)
+
+
+def _energy_scale(moments: FloatArray, targets: FloatArray) -> float:
+    """An energy of the order of the answer, so that the solver sees numbers near one."""
+    return float(np.trace(targets.sum(axis=0)) / np.trace(moments[:, 0].sum(axis=0)) * len(moments))
+
+
+def _information(moments: FloatArray, coefficients: cvxpy.Variable) -> Any:
+    k = moments.shape[-1]
+    weighted = moments * np.where(np.arange(moments.shape[1]) == 0, 1.0, 2.0)[:, None, None]
+    matrix = weighted.reshape(-1, k * k).T
+    return cvxpy.reshape(matrix @ cvxpy.vec(coefficients, order="C"), (k, k), order="C")
+
+
+def _positive(coefficients: Any, degree: int) -> list[Any]:
+    """c_i is the sum of the i-th diagonal of a positive semidefinite matrix."""
+    gram = cvxpy.Variable((degree + 1, degree + 1), PSD=True)
+    sums = [cvxpy.sum(cvxpy.diag(gram, i)) for i in range(degree + 1)]
+    return [coefficients == cvxpy.hstack(sums)]
