@@ -1,6 +1,6 @@
 """Rational functions on the lines of a frequency response: orthonormal bases, poles, and scales that lose no digits."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Self
 
 import numpy as np

@@ -22,6 +22,7 @@ from identification.rational_basis import (
 from identification.signals import FrequencyResponse
 
 DELAY_ITERATIONS = 6
+FINEST = 2000
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,6 +40,19 @@ class Starts:
             if not kept or self.cost[i] > self.cost[kept[-1]] * (1 + 1e-6):
                 kept.append(int(i))
         return Starts(self.zeta[kept[:count]], self.cost[kept[:count]])
+
+    def around_minima(self, count: int) -> "Starts":
+        """Up to `count` of these: the cheapest local minima over τ, the last coefficient, and larger τ next to each."""
+        tau, first = np.unique(self.zeta[:, -1], return_index=True)
+        padded = np.concatenate([[np.inf], self.cost[first], [np.inf]])
+        lowest = np.flatnonzero(
+            (padded[1:-1] <= padded[:-2]) & (padded[1:-1] <= padded[2:]) & np.isfinite(padded[1:-1])
+        )
+        ranked = lowest[np.argsort(self.cost[first][lowest], kind="stable")]
+        wanted = (ranked[:, None] + np.arange(5)).ravel()
+        order = list(dict.fromkeys(wanted[wanted < len(tau)].tolist()))[:count]
+        usable = [i for i in first[order] if np.isfinite(self.cost[i])]
+        return Starts(self.zeta[usable], self.cost[usable])
 
 
 def levy(structure: RationalStructure, data: FrequencyResponse, delay: float = 0.0) -> FloatArray:
@@ -72,19 +86,38 @@ def linear_starts(problem: LinearProblem, stable: bool, iterations: int = 20, co
 
     The polynomials stand in a basis x^j/A_prev made orthonormal on the lines; it spans what the partial fractions of
     vector fitting span [Gustavsen1999]. The norm in the constraint is that of the noise, so that the fit is consistent.
-    With `stable` every candidate is judged with its poles reflected into the stable region. With a delay the starts have
-    different τ, and many of them should be tried: where τ is a little too small, zeros can imitate what is missing.
+    With `stable` every candidate is judged with its poles reflected into the stable region. With a delay the starts
+    differ in τ, and many of them should be tried: where τ is a little too small, zeros can imitate what is missing.
     """
     first = first_denominators(problem)
     if not problem.structure.delay:
         return _iterate(problem, first, np.zeros(len(first)), stable, iterations).best(count)
+    return _scan_delays(problem, first, stable).around_minima(count)
+
+
+def _scan_delays(problem: LinearProblem, first: FloatArray, stable: bool) -> Starts:
+    """The best rational part at each delay of the grid; where the band is narrow, on grids that resolve its phase."""
     taus = delay_grid(problem)
     found = _iterate(problem, np.repeat(first[:1], len(taus), axis=0), taus, stable, DELAY_ITERATIONS)
     for start in first[1:]:
         other = _iterate(problem, np.repeat(start[None], len(taus), axis=0), taus, stable, DELAY_ITERATIONS)
         better = other.cost < found.cost
         found.zeta[better], found.cost[better] = other.zeta[better], other.cost[better]
-    return found.best(count)
+    finer = np.ceil(problem.omega[-1] / (problem.omega[-1] - problem.omega[0] + 1e-300))
+    if finer < 2 or len(taus) < 2:
+        return found
+    tau = np.interp(np.linspace(0, 1, int(min(finer * len(taus), FINEST))), np.linspace(0, 1, len(taus)), taus)
+    nearest = abs(tau[:, None] - taus).argmin(axis=1)
+    return _iterate(problem, _magnitudes(problem, found.zeta)[nearest], tau, stable, DELAY_ITERATIONS)
+
+
+def _magnitudes(problem: LinearProblem, zeta: FloatArray) -> FloatArray:
+    """|A| on the lines (K, F) for ζ (K, n)."""
+    n_a = problem.structure.n_a
+    a = np.concatenate([np.ones((len(zeta), 1)), zeta[:, :n_a]], axis=1)
+    powers = np.arange(n_a + 1)[:, None]
+    values = abs(a @ problem.x ** (powers if problem.structure.is_discrete else powers[::-1]))
+    return np.asarray(np.maximum(values, 1e-12 * values.max(axis=1, keepdims=True)))
 
 
 def first_denominators(problem: LinearProblem) -> FloatArray:

@@ -111,7 +111,7 @@ class RationalFit:
         if scaled.delay:
             kept = np.unique(np.linspace(0, len(data) - 1, min(len(data), LINES_FOR_DELAY)).round().astype(np.int64))
             few = replace(data, frequencies=data.frequencies[kept], response=data.response[kept], variance=None)
-            rough = self._searches(scaled, few, weights[kept], self._starts(scaled, few, weights[kept], 16), 40)
+            rough = self._searches(scaled, few, weights[kept], self._starts(scaled, few, weights[kept], 24), 40)
             starts = np.stack([solution.x for solution in sorted(rough, key=lambda s: s.cost)[:3]])
         else:
             starts = self._starts(scaled, data, weights, 3)
