@@ -1,0 +1,126 @@
+"""Frequency response of an arbitrary record by local polynomials, which take leakage out."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Annotated, ClassVar
+
+import numpy as np
+
+from identification.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from identification.errors import MisuseError, RangeError
+from identification.signals import FrequencyResponse, TimeRecord
+
+CHUNK = 4096
+
+
+@dataclass(frozen=True)
+class LocalPolynomial:
+    """Plant and transient as polynomials of the line number over 2n + 1 lines, solved by least squares at each line.
+
+        Y(k + r) = Σ_{s≤R} g_s r^s U(k + r) + Σ_{s≤R} t_s r^s + V(k + r),   |r| ≤ n,   Ĝ(ω_k) = g_0
+        σ̂_k² = ‖residual‖²/d · [(KᴴK)⁻¹]_{00},   d = 2n + 1 − 2(R + 1)           [PintelonSchoukens2012, Chapter 7]
+
+    K is the matrix of these equations. At both ends of the band the window is not centred. Lines at ω = 0 and the
+    Nyquist frequency are not used. Lines with less input than `threshold` times the largest, or in whose window plant
+    and transient cannot be told apart (input too smooth or on too few lines), are left out.
+
+    Estimates less than 2n + 1 lines apart share data and are correlated. `stride` keeps every so-manieth line; the
+    default, 2n + 1, makes the windows disjoint, so that a χ² or likelihood over the lines is honest; 1 is for drawing.
+    Assumes that the input is known exactly, open loop, and noise that is flat over a window.
+    """
+
+    kind: ClassVar[str] = "local_polynomial"
+
+    degree: Annotated[int, "degree R of the polynomials"] = 2
+    half_window: Annotated[int, "n: lines on each side of the one estimated"] = 6
+    stride: Annotated[int | None, "every so-manieth line is given; 2n + 1 when not stated"] = None
+    threshold: Annotated[float, "smallest input amplitude of a line, as a fraction of the largest"] = 1e-3
+    continuous_time: Annotated[bool, "the response is that of a continuous-time plant (band-limited measurement)"] = (
+        False
+    )
+
+    @classmethod
+    def example(cls) -> "LocalPolynomial":
+        """An instance for tests and catalogues."""
+        return cls()
+
+    def __post_init__(self) -> None:
+        if self.degree < 0:
+            raise RangeError(f"the degree is {self.degree}; it must be zero or more", "degree")
+        if self.degrees_of_freedom < 1:
+            raise RangeError(
+                f"{self.window} lines leave no degree of freedom for {2 * self.degree + 2} unknowns; widen the window",
+                "half_window",
+            )
+        if self.stride is not None and self.stride < 1:
+            raise RangeError(f"the stride is {self.stride}; it must be one or more", "stride")
+        if not 0 <= self.threshold < 1:
+            raise RangeError(f"the threshold is {self.threshold}; it must lie in [0, 1)", "threshold")
+
+    @property
+    def window(self) -> int:
+        """Lines in a window, 2n + 1."""
+        return 2 * self.half_window + 1
+
+    @property
+    def degrees_of_freedom(self) -> int:
+        """d, complex degrees of freedom of each variance."""
+        return self.window - 2 * (self.degree + 1)
+
+    def estimate(self, record: TimeRecord) -> FrequencyResponse:
+        """Ĝ with variances at lines of the record; raises MisuseError when it is too short or its input too poor."""
+        count = (len(record) - 1) // 2
+        if count < self.window:
+            raise MisuseError(
+                f"the record of {len(record)} samples has {count} lines and a window takes {self.window}; record longer"
+                " or narrow the window",
+                "half_window",
+            )
+        u, y = (np.fft.rfft(x)[1 : count + 1] for x in (record.input, record.output))
+        if not u.any():
+            raise MisuseError("the input is constant; no frequency response can be seen", "input")
+        stride = self.window if self.stride is None else self.stride
+        first = self.half_window if stride > 1 else 0
+        centres = np.arange(min(first, count - 1), count, stride)
+        parts = [self._windows(u, y, chunk) for chunk in _chunks(centres)]
+        response, variance, usable = (np.concatenate([part[i] for part in parts]) for i in range(3))
+        if not usable.any():
+            raise MisuseError(
+                "the input excites too few or too smooth lines to tell plant from transient; give the period of the"
+                " record or excite every line with random phases",
+                "input",
+            )
+        omega = 2 * np.pi * (centres[usable] + 1) / (len(record) * record.sample_time)
+        return FrequencyResponse(
+            omega,
+            response[usable],
+            record.operating_point,
+            None if self.continuous_time else record.sample_time,
+            variance[usable],
+            float(self.degrees_of_freedom),
+        )
+
+    def _windows(
+        self, u: ComplexArray, y: ComplexArray, centres: IntArray
+    ) -> tuple[ComplexArray, FloatArray, BoolArray]:
+        """Ĝ, σ̂² and whether they can be used, at the lines `centres` (K,) of the spectra (F,)."""
+        start = np.clip(centres - self.half_window, 0, len(u) - self.window)
+        lines = start[:, None] + np.arange(self.window)
+        powers = ((lines - centres[:, None]) / self.half_window)[..., None] ** np.arange(self.degree + 1)
+        matrix = np.concatenate([powers * u[lines][..., None], powers + 0j], axis=-1)
+        lengths = np.linalg.norm(matrix, axis=1, keepdims=True)
+        lengths = np.where(lengths > 0, lengths, 1.0)
+        left, values, right = np.linalg.svd(matrix / lengths, full_matrices=False)
+        usable = (values[:, -1] > 1e-8 * values[:, 0]) & (abs(u[centres]) > self.threshold * abs(u).max())
+        inverse = right.conj()[:, :, 0] / np.where(usable[:, None], values, 1.0) / lengths[:, 0, :1]
+        projected = np.einsum("kwm,kw->km", left.conj(), y[lines])
+        response = np.sum(inverse * projected, axis=1)
+        residual = y[lines] - np.einsum("kwm,km->kw", left, projected)
+        power = np.sum(abs(residual) ** 2, axis=1) / self.degrees_of_freedom
+        floor = np.finfo(np.float64).eps ** 2 * (np.sum(abs(y[lines]) ** 2, axis=1) + np.mean(abs(y) ** 2))
+        noise = np.maximum(power, np.maximum(floor, np.finfo(np.float64).tiny))
+        return response, noise * np.sum(abs(inverse) ** 2, axis=1), usable
+
+
+def _chunks(centres: IntArray) -> Iterator[IntArray]:
+    return (centres[i : i + CHUNK] for i in range(0, len(centres), CHUNK))
