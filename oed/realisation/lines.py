@@ -10,7 +10,7 @@ from identification.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from identification.errors import MisuseError, RangeError, ShapeError
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Lines:
     """The lines of a signal of period N, whose phases φ are free except at ω = 0 and at the Nyquist frequency.
 

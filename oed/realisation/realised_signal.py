@@ -7,7 +7,7 @@ import numpy as np
 from identification.arrays import FloatArray
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class RealisedSignal:
     """A signal to play, and what was reached with it.
 

@@ -19,7 +19,7 @@ def from_zeros(angles: FloatArray) -> FloatArray:
     h = np.ones(1)
     for angle in angles:
         h = np.convolve(h, [1.0, -2.0 * np.cos(angle), 1.0])
-    return h / np.abs(h).max()
+    return np.asarray(h / np.abs(h).max(), dtype=np.float64)
 
 
 def assert_factor(c: FloatArray, accuracy: float = 1e-9) -> FloatArray:
