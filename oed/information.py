@@ -68,9 +68,10 @@ def _circle(model: LpvModel, points: ArrayLike, degree: int, sample_time: float)
 def _cosine_moments(rows: ComplexArray, degree: int) -> FloatArray:
     """Fourier cosine coefficients 0 … degree of Re(a a*) for a (M, F, k) on a grid from 0 to Nyquist, (M, ·, k, k)."""
     upper = np.triu_indices(rows.shape[-1])
-    left, right = rows[..., upper[0]], rows[..., upper[1]]
-    products = left.real * right.real + left.imag * right.imag
-    moments = np.fft.irfft(products, 2 * (rows.shape[1] - 1), axis=1)[:, : degree + 1]
+    columns = np.swapaxes(rows, 1, 2)
+    real, imag = columns.real.copy(), columns.imag.copy()
+    products = real[:, upper[0]] * real[:, upper[1]] + imag[:, upper[0]] * imag[:, upper[1]]
+    moments = np.swapaxes(fft.irfft(products, 2 * (rows.shape[1] - 1))[..., : degree + 1], 1, 2)
     full = np.empty((*moments.shape[:2], rows.shape[-1], rows.shape[-1]))
     full[..., upper[0], upper[1]] = full[..., upper[1], upper[0]] = moments
     return full

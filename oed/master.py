@@ -120,8 +120,20 @@ def _cap_rows(blocks: Sequence[Block], layout: _Layout, capped: IntArray) -> Flo
 
 
 def _solve(cost: FloatArray, matrix: FloatArray, right: FloatArray, cones: list[object]) -> clarabel.DefaultSolution:
+    return clarabel.DefaultSolver(_no_quadratic(len(cost)), cost, csc_array(matrix), right, cones, _settings()).solve()
+
+
+@cache
+def _no_quadratic(size: int) -> csc_array:
+    return csc_array((size, size))
+
+
+@cache
+def _settings() -> clarabel.DefaultSettings:
+    """One thread, and without the preparations that only pay for large sparse problems."""
     settings = clarabel.DefaultSettings()
     settings.verbose = False
     settings.max_threads = 1
-    quadratic = csc_array((len(cost), len(cost)))
-    return clarabel.DefaultSolver(quadratic, cost, csc_array(matrix), right, cones, settings).solve()
+    settings.presolve_enable = False
+    settings.chordal_decomposition_enable = False
+    return settings

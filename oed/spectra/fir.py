@@ -98,7 +98,7 @@ class FirPricing:
         worth = values[:, -1]
         shapes = {block.point: _active(block, weight) for block, weight in zip(blocks, weights, strict=True)}
         shapes = {point: kept for point, kept in shapes.items() if len(kept)}
-        for m in np.flatnonzero(worth > NEARLY * charges).tolist():
+        for m in np.flatnonzero(worth > np.maximum(NEARLY * charges, worth.max() / 2)).tolist():
             new = vectors[m][:, values[m] > NEARLY * max(charges[m], worth[m])][:, -MOST_NEW:].T
             shapes[m] = _orthonormal(shapes[m], new) if m in shapes else new
         return Offer(worth, self._blocks(shapes))
@@ -129,7 +129,7 @@ class FirPricing:
 
 
 def _correlations(shapes: FloatArray, sizes: Sequence[int]) -> FloatArray:
-    """Σ_s (h_a[s] h_b[s+i] + h_b[s] h_a[s+i])/2, i = 0 … L, of all pairs (a, b) within groups of rows: (pairs, L + 1)."""
+    """Σ_s (h_a[s] h_b[s+i] + h_b[s] h_a[s+i])/2, i = 0 … L, of all pairs (a, b) in groups of rows: (pairs, L + 1)."""
     starts = np.cumsum([0, *sizes[:-1]])
     left = np.concatenate([np.repeat(np.arange(r), r) + s for s, r in zip(starts, sizes, strict=True)])
     right = np.concatenate([np.tile(np.arange(r), r) + s for s, r in zip(starts, sizes, strict=True)])
