@@ -32,8 +32,7 @@ def errors_from(
     if not free_parameters(structure, initial):
         return prediction_errors(structure, zeta, record)
     q, r, start_errors = _projection(structure, zeta, record)
-    state = -np.linalg.lstsq(r, q.T @ start_errors, rcond=1e-13)[0]
-    errors, jacobian = prediction_errors(structure, zeta, record, state)
+    errors, jacobian = prediction_errors(structure, zeta, record, _best_state(q, r, start_errors))
     jacobian = jacobian[:, : structure.size]
     return errors - q @ (q.T @ errors), jacobian - q @ (q.T @ jacobian)
 
@@ -51,16 +50,14 @@ def errors_only(
 def simulated_output(
     structure: RationalStructure, zeta: FloatArray, record: TimeRecord, initial: InitialConditions
 ) -> FloatArray:
-    """G u (N,) with the response to the best initial state added: the output without the noise, as the model sees it."""
+    """G u (N,) with the response to the best initial state added: the output without noise, as the model sees it."""
     a, b, _, _, _ = structure.split(zeta)
     denominator = np.concatenate([[1.0], a])
     pulses = np.zeros(len(record))
     output = lfilter(np.concatenate([np.zeros(structure.n_k), b]), denominator, record.input)
     if free_parameters(structure, initial):
         q, r, errors = _projection(structure, zeta, record)
-        state = -np.linalg.lstsq(r, q.T @ errors, rcond=1e-13)[0]
-        count = min(len(state), len(record))
-        pulses[:count] = state[:count]
+        pulses[: structure.n_a] = _best_state(q, r, errors)
         output = output + lfilter([1.0], denominator, pulses)
     return np.asarray(output)
 
@@ -72,6 +69,10 @@ def _from_rest(structure: RationalStructure, zeta: FloatArray, record: TimeRecor
     return np.asarray(lfilter(np.concatenate([[1.0], d]), np.concatenate([[1.0], c]), disturbance))
 
 
+def _best_state(q: FloatArray, r: FloatArray, errors: FloatArray) -> FloatArray:
+    return np.asarray(-np.linalg.lstsq(r, q.T @ errors, rcond=1e-13)[0], dtype=np.float64)
+
+
 def _projection(
     structure: RationalStructure, zeta: FloatArray, record: TimeRecord
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -79,6 +80,7 @@ def _projection(
     a, _, _, c, d = structure.split(zeta)
     pulse = np.zeros(len(record))
     pulse[0] = 1.0
-    through = lfilter(np.concatenate([[1.0], d]), np.convolve(np.concatenate([[1.0], c]), np.concatenate([[1.0], a])), pulse)
+    a, c, d = (np.concatenate([[1.0], part]) for part in (a, c, d))
+    through = lfilter(d, np.convolve(c, a), pulse)
     q, r = qr(-delayed(through, 0, structure.n_a), mode="economic", check_finite=False)
-    return q, r, _from_rest(structure, zeta, record)
+    return np.asarray(q, dtype=np.float64), np.asarray(r, dtype=np.float64), _from_rest(structure, zeta, record)

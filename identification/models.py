@@ -86,13 +86,13 @@ class RationalStructure:
     def plant_response(self, zeta: FloatArray, omega: FloatArray) -> ComplexArray:
         """G(ω; ζ) for ζ (…, n) and ω (F,) in rad/s, as (…, F)."""
         a, b, tau, _, _ = self.split(zeta)
-        numerator_powers, denominator_powers = self._powers(omega)
+        numerator_powers, denominator_powers = self.powers(omega)
         return self._delay_factor(tau, omega) * (b @ numerator_powers) / _monic(a, denominator_powers)
 
     def plant_gradient(self, zeta: FloatArray, omega: FloatArray) -> ComplexArray:
         """∂G/∂ζ_G for ζ (…, n) and ω (F,), as (…, n_plant, F)."""
         a, b, tau, _, _ = self.split(zeta)
-        numerator_powers, denominator_powers = self._powers(omega)
+        numerator_powers, denominator_powers = self.powers(omega)
         over_a = (self._delay_factor(tau, omega) / _monic(a, denominator_powers))[..., None, :]
         response = over_a * (b @ numerator_powers)[..., None, :]
         ratio = over_a / self._delay_factor(tau, omega)[..., None, :]
@@ -130,7 +130,8 @@ class RationalStructure:
         a, _, _, c, d = self.split(zeta)
         return np.asarray(np.max([abs(roots(x)).max(axis=-1, initial=0.0) for x in (a, c, d)], axis=0))
 
-    def _powers(self, omega: FloatArray) -> tuple[ComplexArray, ComplexArray]:
+    def powers(self, omega: FloatArray) -> tuple[ComplexArray, ComplexArray]:
+        """The powers that B and A are sums of, lowest coefficient first, (n_b + 1, F) and (n_a + 1, F)."""
         numerator, denominator = np.arange(self.n_b + 1)[:, None], np.arange(self.n_a + 1)[:, None]
         if self.sample_time is not None:
             q = np.exp(-1j * omega * self.sample_time)

@@ -17,31 +17,40 @@ def chi_square(name: str, statistic: float, degrees_of_freedom: float) -> TestRe
 
 
 def whiteness(
-    structure: RationalStructure, zeta: FloatArray, errors: FloatArray, lags: int | None = None
+    structure: RationalStructure,
+    zeta: FloatArray,
+    covariance: FloatArray,
+    errors: FloatArray,
+    lags: int | None = None,
 ) -> TestResult | None:
-    """Ljung–Box test of the prediction errors ε (N,) of a model ζ (n,) [Ljung1999, (16.74)].
+    """Ljung–Box test of the prediction errors ε (N,) of a model ζ (n,) with covariance P_ζ (n, n) [Ljung1999, 16.6].
 
-        Q = N (N + 2) Σ_{k=1}^{K} r_k² / (N − k) ~ χ²(K − tr X_K (XᵀX)⁻¹ X_Kᵀ),   r_k the autocorrelation at lag k
+        Q = N (N + 2) Σ_{k=1}^{K} r_k² / (N − k) ~ χ²(K − N tr X_K P_H X_Kᵀ),   r_k the autocorrelation at lag k
 
-    The columns of X are the impulse responses of q^i/C and q^i/D, X_K its first K rows: the fitted noise model takes up
-    as many degrees of freedom as its responses within K lags, all n_c + n_d of them when they have died out by then.
-    None when the record is too short for at least one degree of freedom or ε vanishes.
+    P_H is the block of ζ_H in P_ζ; the columns of X_K are the first K values of the impulse responses −q^i/C and q^i/D,
+    by which r changes with ζ_H. So the fitted noise model takes up n_c + n_d degrees of freedom when its responses die
+    out within K lags, and fewer when they do not or when other experiments have helped to fit it. None when the record
+    is too short for at least one degree of freedom, P_ζ is not finite, or ε vanishes.
     """
     count = lags or _lags(structure, len(errors))
-    taken = _absorbed(structure, zeta, count)
     energy = float(errors @ errors)
-    if count - taken < 0.5 or energy == 0.0:
+    noise = covariance[structure.n_plant :, structure.n_plant :]
+    if energy == 0.0 or not np.all(np.isfinite(noise)):
         return None
     n = len(errors)
+    columns = _noise_responses(structure, zeta, count)
+    freedom = count - min(n * float(np.sum((columns @ noise) * columns)), structure.n_noise)
+    if freedom < 1:
+        return None
     correlation = np.array([errors[k:] @ errors[:-k] for k in range(1, count + 1)]) / energy
     statistic = n * (n + 2) * np.sum(correlation**2 / (n - np.arange(1, count + 1)))
-    return chi_square("whiteness of the prediction errors", float(statistic), count - taken)
+    return chi_square("whiteness of the prediction errors", float(statistic), freedom)
 
 
 def input_independence(
     structure: RationalStructure, errors: FloatArray, jacobian: FloatArray, u: FloatArray, lags: int | None = None
 ) -> TestResult | None:
-    """Test that ε (N,) is uncorrelated with the past inputs u(t − n_k), …, u(t − n_k − K + 1) [Ljung1999, (16.76)].
+    """Test that ε (N,) is uncorrelated with the past inputs u(t − n_k), …, u(t − n_k − K + 1) [Ljung1999, 16.6].
 
         ‖Pε‖² (N − n) / ‖ε‖² ~ χ²(rank P),   P the projection on what J = ∂ε/∂ζ leaves of the past inputs
 
@@ -50,11 +59,11 @@ def input_independence(
     """
     count = lags or _lags(structure, len(errors))
     energy = float(errors @ errors)
-    fitted = _orthonormal(jacobian)
+    fitted = orthonormal(jacobian)
     past = delayed(u, structure.n_k, count)
     left = past / np.maximum(np.linalg.norm(past, axis=0), np.finfo(float).tiny)
     left = left - fitted @ (fitted.T @ left)
-    basis = _orthonormal(left - fitted @ (fitted.T @ left), scaled=False)
+    basis = orthonormal(left - fitted @ (fitted.T @ left), scaled=False)
     freedom = len(errors) - fitted.shape[1]
     if basis.shape[1] == 0 or freedom <= basis.shape[1] or energy == 0.0:
         return None
@@ -66,19 +75,14 @@ def _lags(structure: RationalStructure, samples: int) -> int:
     return int(min(max(20, structure.size + 10), max(samples // 4, 1)))
 
 
-def _absorbed(structure: RationalStructure, zeta: FloatArray, lags: int) -> float:
-    """tr X_K (XᵀX)⁻¹ X_Kᵀ, between 0 and n_c + n_d."""
-    if structure.n_noise == 0:
-        return 0.0
+def _noise_responses(structure: RationalStructure, zeta: FloatArray, lags: int) -> FloatArray:
     _, _, _, c, d = structure.split(zeta)
-    pulse = np.eye(max(20 * lags, 2000), 1).ravel()
-    columns = [
-        delayed(lfilter([1.0], np.concatenate([[1.0], part]), pulse), 0, len(part)) for part in (c, d) if len(part)
-    ]
-    return float(np.sum(_orthonormal(np.concatenate(columns, axis=1))[:lags] ** 2))
+    pulse = np.eye(lags, 1).ravel()
+    of_c, of_d = (lfilter([1.0], np.concatenate([[1.0], part]), pulse) for part in (c, d))
+    return np.concatenate([-delayed(of_c, 0, len(c)), delayed(of_d, 0, len(d))], axis=1)
 
 
-def _orthonormal(columns: FloatArray, scaled: bool = True) -> FloatArray:
+def orthonormal(columns: FloatArray, scaled: bool = True) -> FloatArray:
     """An orthonormal basis of the span of the columns, without those that rounding alone holds up."""
     if scaled:
         norms = np.linalg.norm(columns, axis=0)

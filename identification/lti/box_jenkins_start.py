@@ -65,14 +65,19 @@ def high_order_model(structure: RationalStructure, record: TimeRecord, order: in
     y, u = record.output, record.input
     skipped = order + structure.n_k
     columns = [-delayed(y, 1, order), delayed(u, structure.n_k, order), y[:, None]]
-    factor = qr(np.concatenate(columns, axis=1)[skipped:], mode="r", check_finite=False)[0][: 2 * order + 1]
+    factor = _triangle(np.concatenate(columns, axis=1)[skipped:])
     return _from_factor(factor, order)
+
+
+def _triangle(matrix: FloatArray) -> FloatArray:
+    factor = np.asarray(qr(matrix, mode="r", check_finite=False)[0], dtype=np.float64)
+    return factor[: matrix.shape[1]]
 
 
 def _from_factor(factor: FloatArray, order: int) -> HighOrderModel:
     rows = np.zeros((2 * order, 2 * order + 1))
     rows[: len(factor)] = factor[: 2 * order]
-    eta = np.linalg.lstsq(rows[:, :-1], rows[:, -1], rcond=1e-10)[0]
+    eta = np.asarray(np.linalg.lstsq(rows[:, :-1], rows[:, -1], rcond=1e-10)[0], dtype=np.float64)
     return HighOrderModel(eta[:order], eta[order:], rows[:, :-1], rows[:, -1])
 
 
@@ -81,7 +86,7 @@ def truncated(model: HighOrderModel, order: int) -> HighOrderModel:
     p = len(model.a)
     kept = np.arange(min(order, p))
     columns = model.factor[:, np.concatenate([kept, p + kept])]
-    factor = qr(np.column_stack([columns, model.target]), mode="r", check_finite=False)[0][: 2 * len(kept) + 1]
+    factor = _triangle(np.column_stack([columns, model.target]))
     return _from_factor(factor, len(kept))
 
 
@@ -96,7 +101,8 @@ def weighted_null_space(structure: RationalStructure, model: HighOrderModel, rou
     zeta, found = np.zeros(structure.size), []
     for _ in range(rounds):
         weighted = _weighted(structure, zeta, np.column_stack([regressors, target]), model)
-        zeta = _stable(structure, np.linalg.lstsq(weighted[:, :-1], weighted[:, -1], rcond=1e-12)[0])
+        solution = np.linalg.lstsq(weighted[:, :-1], weighted[:, -1], rcond=1e-12)[0]
+        zeta = _stable(structure, np.asarray(solution, dtype=np.float64))
         found.append(zeta)
     return found[-2:]
 

@@ -31,7 +31,7 @@ def lowest_minimum(
 
     for wave in waves:
         before = len(minima)
-        coarse = []
+        coarse: list[LeastSquaresSolution] = []
         for cost, start in sorted(((_cost(residual_only, start), start) for start in wave), key=lambda pair: pair[0]):
             if len(coarse) < FOLLOWED_PER_WAVE and np.isfinite(cost) and not known(start, cost):
                 coarse.append(levenberg_marquardt(evaluate, start, feasible, COARSE_ITERATIONS, 1e-4))

@@ -16,7 +16,7 @@ from identification.initial_conditions import (
     simulated_output,
 )
 from identification.least_squares import LeastSquaresSolution
-from identification.likelihood import require_same_sampling
+from identification.likelihood import delayed, require_same_sampling
 from identification.lti.box_jenkins_start import waves
 from identification.lti.multistart import lowest_minimum
 from identification.models import LocalModel, RationalStructure
@@ -60,21 +60,25 @@ class PredictionError:
         _require_information(structure, record, free)
         scales = _rms(record.input), _rms(record.output)
         scaled = replace(record, input=record.input / scales[0], output=record.output / scales[1])
-        solution = self._search(structure, scaled)
+        excited = _excited_directions(structure, scaled, self.initial_conditions)
+        solution = self._search(structure, scaled, sufficient=excited == structure.n_plant)
         units = np.ones(structure.size)
         units[structure.n_a : structure.n_plant] = scales[1] / scales[0]
         variance = max(solution.cost / (len(record) - structure.size - free), float(np.finfo(float).eps) ** 2)
+        outcome = _outcome(structure, solution, excited)
         covariance = variance * solution.covariance * np.outer(units, units)
+        if outcome.status == "not_identifiable":
+            covariance = np.full_like(covariance, np.inf)
         model = LocalModel(structure, record.operating_point, solution.x * units, covariance, variance * scales[1] ** 2)
-        outcome = _outcome(structure, solution)
-        return LocalEstimate(model, outcome, _tests(structure, solution, scaled), self._fit(model, record))
+        return LocalEstimate(model, outcome, _tests(solution, variance, structure, scaled), self._fit(model, record))
 
-    def _search(self, structure: RationalStructure, record: TimeRecord) -> LeastSquaresSolution:
+    def _search(self, structure: RationalStructure, record: TimeRecord, sufficient: bool) -> LeastSquaresSolution:
+        first_estimates = waves(structure, record)
         return lowest_minimum(
             lambda zeta: errors_from(structure, zeta, record, self.initial_conditions),
             lambda zeta: errors_only(structure, zeta, record, self.initial_conditions),
             lambda zeta: bool(structure.stable(zeta)),
-            waves(structure, record),
+            first_estimates if sufficient else [next(first_estimates)],
         )
 
     def _fit(self, model: LocalModel, record: TimeRecord) -> float:
@@ -102,16 +106,36 @@ def _require_information(structure: RationalStructure, record: TimeRecord, free:
             raise NotIdentifiableError(f"the {name} is zero throughout, nothing can be learnt from it", name)
 
 
-def _outcome(structure: RationalStructure, solution: LeastSquaresSolution) -> Outcome:
+def _excited_directions(structure: RationalStructure, record: TimeRecord, initial: InitialConditions) -> int:
+    """The rank of (u(t), …, u(t − n_a − n_b)): how many coefficients of G the input tells apart [Ljung1999, 13.2].
+
+    Before a record that starts from rest the input was zero; otherwise only what is within the record counts.
+    """
+    past = delayed(record.input, structure.n_k, structure.n_plant)
+    if initial == "estimate":
+        past = past[structure.n_k + structure.n_plant - 1 :]
+    values = np.linalg.svd(np.linalg.qr(past, mode="r"), compute_uv=False)
+    return int(np.sum(values > 1e-9 * values.max(initial=np.finfo(float).tiny)))
+
+
+def _outcome(structure: RationalStructure, solution: LeastSquaresSolution, excited: int) -> Outcome:
+    if excited < structure.n_plant:
+        advice = (
+            f"the input tells only {excited} of the {structure.n_plant} coefficients of G apart; excite more frequencies,"
+            " choose lower orders, or estimate jointly with other operating points"
+        )
+        return Outcome("not_identifiable", advice, solution.outcome.iterations)
     if structure.n_noise and solution.cost <= 1e-26 * len(solution.residual):
         advice = "the record holds no noise from which H could be learnt; leave C and D out (n_c = n_d = 0)"
         return Outcome("not_identifiable", advice, solution.outcome.iterations)
     return solution.outcome
 
 
-def _tests(structure: RationalStructure, solution: LeastSquaresSolution, record: TimeRecord) -> tuple[TestResult, ...]:
+def _tests(
+    solution: LeastSquaresSolution, variance: float, structure: RationalStructure, record: TimeRecord
+) -> tuple[TestResult, ...]:
     found = (
-        whiteness(structure, solution.x, solution.residual),
+        whiteness(structure, solution.x, variance * solution.covariance, solution.residual),
         input_independence(structure, solution.residual, solution.jacobian, record.input),
     )
     return tuple(test for test in found if test is not None)

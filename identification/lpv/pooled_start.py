@@ -1,0 +1,173 @@
+"""First estimates of θ straight from all experiments, where some alone cannot identify a local model."""
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from scipy.linalg import qr
+from scipy.signal import lfilter
+
+from identification.arrays import ComplexArray, FloatArray
+from identification.likelihood import delayed
+from identification.lti.box_jenkins_start import autoregression, disturbance, high_order_model, reflected
+from identification.models import RationalStructure
+from identification.signals import FrequencyResponse, Measurement, TimeRecord
+
+ONE = np.ones(1)
+DELAYS_TRIED = 8
+
+
+def pooled_starts(
+    structure: RationalStructure, transfer: FloatArray, experiments: Sequence[Measurement], rounds: int = 6
+) -> list[FloatArray]:
+    """Stable first estimates θ (k,) for T(p_m) (M, n, k): a Steiglitz–McBride iteration that is linear in θ.
+
+        Σ_m ‖W_m (A(q, T_m θ) y_m − B(q, T_m θ) u_m)‖² / |A(q, T_m θ_prev)|²  →  min over θ_G
+
+    W_m whitens a record by an autoregressive model of high order and weighs a frequency response by its deviations;
+    there u_m = 1 and y_m is the response. The noise model follows from a regression of what is left on its own past
+    and on past innovations, linear in θ_H. Estimates unstable at an operating point have their poles drawn in.
+    """
+    found = []
+    for tau in _delays(structure, experiments):
+        for whitened in (True, False):
+            parts = [_Rows(structure, T, e, tau, whitened) for T, e in zip(transfer, experiments, strict=True)]
+            for plant in _iterate(structure, transfer, parts, tau, rounds):
+                noisy = _with_noise(structure, transfer, experiments, plant)
+                stable = _drawn_in(structure, transfer, noisy)
+                found.extend([stable] if stable is not None and np.all(np.isfinite(stable)) else [])
+    return found
+
+
+def _delays(structure: RationalStructure, experiments: Sequence[Measurement]) -> list[float]:
+    if not structure.delay:
+        return [0.0]
+    lines = [np.sort(e.frequencies) for e in experiments if isinstance(e, FrequencyResponse)]
+    spacing = [float(np.diff(each).min()) for each in lines if len(each) > 1]
+    highest = max((float(each[-1]) for each in lines), default=1.0)
+    longest = min(np.pi / min(spacing, default=np.pi), 40 / max(highest, np.finfo(float).tiny))
+    return list(np.linspace(0.0, longest, DELAYS_TRIED))
+
+
+class _Rows:
+    """The linear equations in θ that one experiment contributes, weighted with the denominator of the round before."""
+
+    def __init__(
+        self, structure: RationalStructure, transfer: FloatArray, data: Measurement, tau: float, whitened: bool
+    ) -> None:
+        self.structure, self.transfer, self.data, self.tau = structure, transfer, data, tau
+        self.whitener = ONE
+        if isinstance(data, TimeRecord) and whitened and structure.n_noise:
+            order = min(25, max(len(data) // 6, 1))
+            self.whitener = high_order_model(structure, data, order).denominator
+
+    def equations(self, theta: FloatArray | None) -> tuple[FloatArray, FloatArray]:
+        """Columns (R, k) and target (R,)."""
+        if isinstance(self.data, TimeRecord):
+            columns, target = self._of_record(self.data, theta)
+        else:
+            columns, target = self._of_response(self.data, theta)
+        return columns @ self.transfer[: self.structure.n_a + self.structure.n_b + 1], target
+
+    def _of_record(self, record: TimeRecord, theta: FloatArray | None) -> tuple[FloatArray, FloatArray]:
+        s = self.structure
+        denominator = ONE
+        if theta is not None:
+            denominator = reflected(np.concatenate([ONE, (self.transfer @ theta)[: s.n_a]]))
+        y, u = lfilter(self.whitener, ONE, np.stack([record.output, record.input]))
+        pulse = np.eye(len(record), 1).ravel()
+        y, u, pulse = lfilter(ONE, denominator, np.stack([y, u, pulse]))
+        columns = np.concatenate([-delayed(y, 1, s.n_a), delayed(u, s.n_k, s.n_b + 1)], axis=1)
+        start = qr(delayed(pulse, 0, s.n_a + len(self.whitener) - 1), mode="economic", check_finite=False)[0]
+        return columns - start @ (start.T @ columns), y - start @ (start.T @ y)
+
+    def _of_response(self, data: FrequencyResponse, theta: FloatArray | None) -> tuple[FloatArray, FloatArray]:
+        s = self.structure
+        numerator, denominator = s.powers(data.frequencies)
+        weights = 1 / np.sqrt(data.variance) if data.variance is not None else np.ones(len(data))
+        weights = weights.astype(np.complex128)
+        if theta is not None:
+            local = self.transfer @ theta
+            weights = weights / abs(denominator[0] + local[: s.n_a] @ denominator[1:])
+        response = data.response * np.exp(1j * data.frequencies * self.tau)
+        columns = weights * np.concatenate([-response * denominator[1:], numerator])
+        target = weights * response * denominator[0]
+        return _real(columns).T, _real(target)
+
+
+def _real(values: ComplexArray) -> FloatArray:
+    return np.concatenate([values.real, values.imag], axis=-1)
+
+
+def _iterate(
+    structure: RationalStructure, transfer: FloatArray, parts: Sequence[_Rows], tau: float, rounds: int
+) -> Iterator[FloatArray]:
+    """θ (k,) after each of the last rounds, with zeros for H and, where there is a delay, τ the same everywhere."""
+    theta: FloatArray | None = None
+    for i in range(rounds):
+        columns, targets = zip(*(part.equations(theta) for part in parts), strict=True)
+        theta = _solve(np.concatenate(columns), np.concatenate(targets))
+        if structure.delay:
+            of_tau = transfer[:, structure.n_plant - 1, :]
+            theta = theta + np.linalg.lstsq(of_tau, np.full(len(of_tau), tau), rcond=1e-12)[0]
+        if i in (0, rounds - 2, rounds - 1):
+            yield theta
+
+
+def _with_noise(
+    structure: RationalStructure, transfer: FloatArray, experiments: Sequence[Measurement], theta: FloatArray
+) -> FloatArray:
+    """θ with θ_H from the regression v = Σ c_i e(t − i) − Σ d_i v(t − i) + e over all records."""
+    if structure.n_noise == 0:
+        return theta
+    columns, targets = [], []
+    for T, data in zip(transfer, experiments, strict=True):
+        if isinstance(data, TimeRecord):
+            plant = (T @ theta)[: structure.n_plant]
+            denominator = reflected(np.concatenate([ONE, plant[: structure.n_a]]))
+            plant = np.concatenate([denominator[1:], plant[structure.n_a :]])
+            v = disturbance(structure, plant, data)
+            e = lfilter(autoregression(v), ONE, v)
+            regressors = np.concatenate([delayed(e, 1, structure.n_c), -delayed(v, 1, structure.n_d)], axis=1)
+            deviation = np.std(e) or 1.0
+            columns.append(regressors @ T[structure.n_plant :] / deviation)
+            targets.append(v / deviation)
+    return theta + _solve(np.concatenate(columns), np.concatenate(targets))
+
+
+def _solve(columns: FloatArray, target: FloatArray) -> FloatArray:
+    scale = np.linalg.norm(columns, axis=0)
+    scale = np.where(scale > 0, scale, np.inf)
+    return np.asarray(np.linalg.lstsq(columns / scale, target, rcond=1e-11)[0] / scale)
+
+
+def _drawn_in(structure: RationalStructure, transfer: FloatArray, theta: FloatArray) -> FloatArray | None:
+    """θ with all zeros of A, C, D drawn towards the origin until every operating point is stable.
+
+    In discrete time i-th coefficients are multiplied by λ^i, which multiplies every zero by λ; in continuous time the
+    poles of each operating point are mirrored and θ fitted to the result. None when that does not help.
+    """
+    if np.all(structure.stable(transfer @ theta)):
+        return theta
+    if not structure.is_discrete:
+        return _mirrored(structure, transfer, theta)
+    powers = np.zeros(structure.size)
+    for first, count in ((0, structure.n_a), (structure.n_plant, structure.n_c)):
+        powers[first : first + count] = np.arange(1, count + 1)
+    powers[structure.n_plant + structure.n_c :] = np.arange(1, structure.n_d + 1)
+    exponent = np.abs(transfer).sum(axis=0).T @ powers / np.maximum(np.abs(transfer).sum(axis=(0, 1)), 1e-300)
+    for factor in (0.999, 0.99, 0.97, 0.95, 0.9, 0.8, 0.6, 0.4, 0.2, 0.0):
+        shrunk = theta * factor**exponent
+        if np.all(structure.stable(transfer @ shrunk)):
+            return np.asarray(shrunk)
+    return None
+
+
+def _mirrored(structure: RationalStructure, transfer: FloatArray, theta: FloatArray) -> FloatArray | None:
+    zeta = transfer @ theta
+    for row in zeta:
+        poles = structure.poles(row) / structure.frequency_scale
+        mirrored = -np.maximum(abs(poles.real), 1e-3 * abs(poles)) + 1j * poles.imag
+        row[: structure.n_a] = np.poly(mirrored).real[1:]
+    matrix = transfer.reshape(-1, transfer.shape[-1])
+    fitted = _solve(matrix, zeta.ravel())
+    return fitted if np.all(structure.stable(transfer @ fitted)) else None
