@@ -3,6 +3,8 @@
 from collections.abc import Sequence
 from typing import Any
 
+from pydantic.alias_generators import to_camel
+
 Location = Sequence[str | int]
 
 
@@ -25,6 +27,11 @@ def body_pointer(location: Location, body: Any, missing: bool = False) -> str:
 def pointer(steps: Sequence[str]) -> str:
     """The pointer with these steps; the empty one is the whole body."""
     return "".join("/" + step.replace("~", "~0").replace("/", "~1") for step in steps)
+
+
+def field_pointer(field: str) -> str:
+    """The pointer of a field that misuse names: a pointer already, or an argument in snake case."""
+    return field if field.startswith("/") else "/" + to_camel(field)
 
 
 def _leads_into(value: Any, step: str | int) -> bool:

@@ -60,7 +60,7 @@ def build(application: FastAPI) -> Json:
         schemas.pop(unused, None)
     document["components"]["securitySchemes"] = {"bearer": {"type": "http", "scheme": "bearer"}}
     document["security"] = [{}, {"bearer": []}]
-    _mark_numbers(document)
+    _polish(document)
     return document
 
 
@@ -81,22 +81,21 @@ def _declare_problems(operation: Json) -> None:
         possible[404] = "There is no such resource"
     if any(parameter["name"] == "Idempotency-Key" for parameter in operation.get("parameters", ())):
         possible[409] = "The Idempotency-Key was used for another request"
-    declared = operation["responses"]
-    for status, description in sorted(possible.items()):
-        declared[str(status)] = _problem_response(declared.get(str(status), {}).get("description"), description)
+    responses = operation["responses"]
+    stated = {status: answer["description"] for status, answer in responses.items() if status[0] in "45"}
+    stated = {status: text for status, text in stated.items() if text != "Validation Error"}
+    for status, description in ({str(status): text for status, text in possible.items()} | stated).items():
+        reference = {"$ref": REFERENCE.format(model="Problem")}
+        responses[status] = {"description": description, "content": {MEDIA_TYPE: {"schema": reference}}}
 
 
-def _problem_response(stated: str | None, description: str) -> Json:
-    text = description if stated in (None, "Validation Error") else stated
-    return {"description": text, "content": {MEDIA_TYPE: {"schema": {"$ref": REFERENCE.format(model="Problem")}}}}
-
-
-def _mark_numbers(node: Any) -> None:
+def _polish(node: Any) -> None:
+    """Numbers are doubles; titles that only repeat the name of a property or parameter go."""
     if isinstance(node, dict):
         if node.get("type") == "number":
             node.setdefault("format", "double")
-        for value in node.values():
-            _mark_numbers(value)
-    elif isinstance(node, list):
-        for value in node:
-            _mark_numbers(value)
+        repeated = [*node.get("properties", {}).values(), node["schema"] if "in" in node else None]
+        for schema in filter(None, repeated):
+            schema.pop("title", None)
+    for inner in node.values() if isinstance(node, dict) else node if isinstance(node, list) else ():
+        _polish(inner)

@@ -6,7 +6,6 @@ from typing import Any
 
 from fastapi import FastAPI, Request, Response, params
 from fastapi.exceptions import RequestValidationError
-from pydantic.alias_generators import to_camel
 from starlette.exceptions import HTTPException
 
 from app.errors import (
@@ -18,7 +17,7 @@ from app.errors import (
     problem_of_status,
     problem_response,
 )
-from app.json_pointer import body_pointer, pointer
+from app.json_pointer import body_pointer, field_pointer, pointer
 from app.schemas.common import FieldProblem
 from app.store.arrays import ArraysTooLargeError
 from identification.errors import MisuseError
@@ -53,7 +52,7 @@ async def _on_http_exception(request: Request, error: Exception) -> Response:
 
 async def _on_misuse(request: Request, error: Exception) -> Response:
     assert isinstance(error, MisuseError)
-    fields = [FieldProblem(pointer="/" + to_camel(error.field), detail=str(error))] if error.field else []
+    fields = [FieldProblem(pointer=field_pointer(error.field), detail=str(error))] if error.field else []
     return answer(UnprocessableError(str(error), fields), request.url.path)
 
 
@@ -76,7 +75,7 @@ def _error_of_validation(request: Request, error: RequestValidationError) -> Pro
         if failure["type"] == "json_invalid":
             reason, position = failure["ctx"]["error"], failure["loc"][-1]
             return BadRequestError(f"the body is no JSON: {reason} at character {position}")
-    if any(failure["loc"][0] == "body" for failure in failures):
+    if error.body is not None and any(failure["loc"][0] == "body" for failure in failures):
         expected = _expected_media_type(request)
         if expected is not None and not _has_media_type(request, expected):
             return UnsupportedMediaTypeError(f"the body must be sent as {expected}")

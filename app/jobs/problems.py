@@ -3,6 +3,7 @@
 from typing import Any
 
 from app.errors import problem_type
+from app.json_pointer import field_pointer
 from app.schemas.common import FieldProblem, Problem
 
 
@@ -15,7 +16,7 @@ def _problem(
 
 def misuse(message: str, field: str | None) -> dict[str, Any]:
     """The request cannot be answered as it stands."""
-    errors = [FieldProblem(pointer=f"/{field}", detail=message)] if field else []
+    errors = [FieldProblem(pointer=field_pointer(field), detail=message)] if field else []
     return _problem("invalid-request", "Invalid request", 422, message, errors)
 
 

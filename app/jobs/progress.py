@@ -3,6 +3,7 @@
 import json
 import logging
 from collections.abc import Sequence
+from multiprocessing import Pipe
 from multiprocessing.connection import Connection, wait
 from threading import Event, Thread
 from typing import Any
@@ -10,7 +11,6 @@ from typing import Any
 from app.jobs.journal import Journal, Progress, Run
 
 logger = logging.getLogger(__name__)
-SECONDS_BETWEEN_LOOKS = 0.5
 
 
 class ProgressPump:
@@ -20,6 +20,7 @@ class ProgressPump:
         self._journal = journal
         self._pipes = pipes
         self._stopping = Event()
+        self._bell, self._bell_pull = Pipe(duplex=False)
         self._thread = Thread(target=self._loop, name="lpv-oed-job-progress", daemon=True)
 
     def start(self) -> None:
@@ -27,11 +28,13 @@ class ProgressPump:
 
     def stop(self) -> None:
         self._stopping.set()
+        self._bell_pull.close()
         self._thread.join()
+        self._bell.close()
 
     def _loop(self) -> None:
         while not self._stopping.is_set():
-            ready = wait(self._pipes, SECONDS_BETWEEN_LOOKS)
+            ready = wait([*self._pipes, self._bell])
             try:
                 self._write_down([pipe for pipe in self._pipes if pipe in ready])
             except Exception:

@@ -2,12 +2,15 @@
 
 from dataclasses import dataclass
 from datetime import datetime
-from typing import Any, Literal, get_args
+from typing import Any, Literal
 
-JobState = Literal["queued", "running", "succeeded", "failed", "cancelled"]
-EventName = Literal["queued", "started", "progress", "requeued", "succeeded", "failed", "cancelled"]
+from typing_extensions import TypeAliasType
 
-STATES: tuple[JobState, ...] = get_args(JobState)
+JobState = TypeAliasType("JobState", Literal["queued", "running", "succeeded", "failed", "cancelled"])
+EventName = TypeAliasType(
+    "EventName", Literal["queued", "started", "progress", "requeued", "succeeded", "failed", "cancelled"]
+)
+
 FINAL_STATES: frozenset[JobState] = frozenset({"succeeded", "failed", "cancelled"})
 
 

@@ -12,8 +12,8 @@ from app.services.job_events import watch
 
 router = APIRouter(prefix="/jobs", tags=["jobs"])
 
-EventId = Annotated[str | None, Header(alias="Last-Event-ID", pattern=r"^\d{1,18}$")]
-EventIdQuery = Annotated[str | None, Query(alias="lastEventId", pattern=r"^\d{1,18}$")]
+EventId = Annotated[str | None, Header(alias="Last-Event-ID", pattern=r"^[0-9]{1,18}$")]
+EventIdQuery = Annotated[str | None, Query(alias="lastEventId", pattern=r"^[0-9]{1,18}$")]
 EVENT_STREAM: dict[int | str, dict[str, Any]] = {
     200: {
         "description": "Server-sent events; the data of each is a JobEvent, its id the sequence",

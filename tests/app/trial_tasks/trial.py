@@ -1,0 +1,69 @@
+"""A job that counts in small steps, then ends as it is told."""
+
+import os
+import signal
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from app.jobs.task import TaskContext, TaskResult
+from identification.errors import MisuseError
+
+KIND = "trial"
+
+
+def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
+    steps = payload.get("steps", 1)
+    if "note" in payload:
+        note = Path(payload["note"])
+        note.with_suffix(".part").write_text(str(os.getpid()))
+        note.with_suffix(".part").rename(note)
+    for step in range(steps):
+        context.progress(step / steps, f"step {step + 1} of {steps} ✓")
+        time.sleep(payload.get("seconds", 0.0) / steps)
+    return _END[payload.get("end", "return")](payload, context)
+
+
+def _succeed(payload: dict[str, Any], context: TaskContext) -> TaskResult:
+    digest = context.arrays.put({"count": np.arange(payload.get("steps", 1))})
+    return TaskResult({"name": payload.get("name", ""), "pid": os.getpid()}, digest)
+
+
+def _misuse(payload: dict[str, Any], context: TaskContext) -> TaskResult:
+    raise MisuseError("give more operating points", "operating_points")
+
+
+def _fault(payload: dict[str, Any], context: TaskContext) -> TaskResult:
+    raise KeyError("a secret of the inside")
+
+
+def _hoard(payload: dict[str, Any], context: TaskContext) -> TaskResult:
+    hoard = [np.ones(2**24) for _ in range(2**10)]
+    return TaskResult({"size": len(hoard)})
+
+
+def _kill(payload: dict[str, Any], context: TaskContext) -> TaskResult:
+    os.kill(os.getpid(), signal.SIGKILL)
+    raise AssertionError
+
+
+def _exit(payload: dict[str, Any], context: TaskContext) -> TaskResult:
+    sys.exit(0)
+
+
+def _no_number(payload: dict[str, Any], context: TaskContext) -> TaskResult:
+    return TaskResult({"value": float("nan")})
+
+
+_END = {
+    "return": _succeed,
+    "misuse": _misuse,
+    "fault": _fault,
+    "hoard": _hoard,
+    "kill": _kill,
+    "exit": _exit,
+    "no number": _no_number,
+}
