@@ -8,9 +8,9 @@ from identification.errors import MisuseError
 
 
 @contextmanager
-def pointing(pointers: Mapping[str, str], default: str = "") -> Iterator[None]:
+def pointing(pointers: Mapping[str, str], default: str = "", location: str = "body") -> Iterator[None]:
     """Turn MisuseError into a problem; `pointers` from names of arguments to JSON pointers."""
     try:
         yield
     except MisuseError as error:
-        raise UnprocessableError.at(pointers.get(error.field or "", default), str(error)) from error
+        raise UnprocessableError.at(pointers.get(error.field or "", default), str(error), location) from error

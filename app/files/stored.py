@@ -24,7 +24,7 @@ def arrays_file(arrays: Mapping[str, NDArray[Any]], file_format: Format) -> byte
         return npz_file.write(dict(arrays))
     if file_format == "mat":
         return mat_writer.write(arrays)
-    columns = {}
+    columns: dict[str, NDArray[Any]] = {}
     length = max(array.size for array in arrays.values())
     for name, array in arrays.items():
         full = np.broadcast_to(array, length)

@@ -38,7 +38,7 @@ class AxesGrid(CamelModel):
 
 
 class Box(CamelModel):
-    """Any operating point between two corners; a grid is refined where it pays."""
+    """Any operating point between two corners; a grid is refined where it pays. Energy caps are not possible."""
 
     kind: Literal["box"]
     minimum: OperatingPoint
@@ -106,6 +106,7 @@ class LineSpectrumDocument(CamelModel):
     """Energy on single frequencies."""
 
     kind: Literal["lines"]
+    line_indices: list[Integer] = Field(description="which multiples of the lowest line of the period")
     frequencies_rad_per_second: Vector
     energies: Vector = Field(description="Σ u(t)² of each line")
     period_samples: Integer = Field(description="samples of the period that holds these lines")
@@ -143,9 +144,12 @@ class DesignedExperimentDocument(CamelModel):
 class BindingDocument(CamelModel):
     """Something that the energy would be less without."""
 
-    kind: str = Field(description="target or cap")
-    description: str
-    multiplier: Double | None = Field(description="its price in the optimum")
+    what: Literal["target", "cap"]
+    target_index: Integer | None = Field(description="which of the targets, from zero; null for a cap")
+    operating_point: Vector | None = Field(description="where the cap is; null for a target")
+    multiplier: Double | None = Field(
+        description="of a target, its share of the energy; of a cap, the energy that one unit more would save"
+    )
 
 
 class Design(CamelModel):

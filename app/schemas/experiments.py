@@ -60,7 +60,9 @@ class FileFields(ExperimentFields):
 
     sample_time_seconds: Positive | None = Field(default=None, description="needed when the file has no time")
     period_samples: Annotated[Integer, Field(ge=2)] | None = Field(default=None, description="samples in one period")
-    variable_group: Text = Field(default="", description="structure of a mat file that holds the arrays, e.g. data.run1")
+    variable_group: Text = Field(
+        default="", description="structure of a mat file that holds the arrays, e.g. data.run1"
+    )
 
 
 class Understanding(CamelModel):

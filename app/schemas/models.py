@@ -29,7 +29,10 @@ class ModelRequest(CamelModel):
     structure: Structure | None = Field(default=None, description="in place of the structure of the plant")
     basis: ProductBasisDocument | None = Field(default=None, description="in place of the basis of the plant")
     coefficient_bases: list[CoefficientBasis] | None = Field(default=None, description="in place of those of the plant")
-    parent_model_id: Identifier | None = Field(default=None, description="the model that this one is a new version of")
+    prior_model_id: Identifier | None = Field(
+        default=None,
+        description="a model from other experiments, whose information is added; the new model is its next version",
+    )
 
 
 class StatedModelRequest(CamelModel):
@@ -142,5 +145,3 @@ class ModelFrequencyResponse(CamelModel):
     real_variance: Vector | None
     imaginary_variance: Vector | None
     real_imaginary_covariance: Vector | None
-
-

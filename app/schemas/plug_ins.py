@@ -1,20 +1,23 @@
 """Schemas made from plug-ins: what a file of identification or oed offers is offered over HTTP as well."""
 
 import dataclasses
+import operator
 import types
 import typing
 from collections.abc import Iterable, Mapping
-from functools import cached_property
+from functools import cached_property, reduce
 from types import ModuleType
 from typing import Any, Literal
 
 import numpy as np
 from pydantic import Field, create_model, model_validator
-from pydantic.alias_generators import to_camel
 from typing_extensions import TypeAliasType
 
 from app.schemas.common import CamelModel, Double, Integer
 from identification.registry import discover
+
+_LIST: Any = list
+_LITERAL: Any = Literal
 
 
 class PlugInDocument(CamelModel):
@@ -32,33 +35,29 @@ class PlugInFamily:
     name: str
     suffix: str
     package: ModuleType
-    leave_out: frozenset[str] = frozenset()
 
     @cached_property
     def models(self) -> Mapping[str, type[PlugInDocument]]:
         """The schema of each plug-in by its kind."""
-        kinds = discover(self.package).items()
-        return {kind: _schema(plug_in, self.suffix) for kind, plug_in in kinds if kind not in self.leave_out}
+        return {kind: _schema(plug_in, self.suffix) for kind, plug_in in discover(self.package).items()}
 
     @cached_property
     def union(self) -> Any:
         """The type to annotate a field with."""
         return named_union(self.name, self.models.values(), "kind")
 
-    def where(self, **attributes: Any) -> "PlugInFamily":
-        """The family without the plug-ins whose class attributes differ from these."""
-        kinds = discover(self.package).items()
-        other = {k for k, p in kinds if any(getattr(p, name, value) != value for name, value in attributes.items())}
-        return dataclasses.replace(self, leave_out=self.leave_out | other)
-
 
 def named_union(name: str, members: Iterable[type[Any]], discriminator: str) -> Any:
     """A union with a name of its own in the OpenAPI document; one member needs no discriminator."""
     every = tuple(members) or (PlugInDocument,)
+    alias: Any = TypeAliasType
     if len(every) == 1:
-        return TypeAliasType(name, every[0])  # type: ignore[misc, valid-type]
-    union = typing.Annotated[typing.Union[every], Field(discriminator=discriminator)]  # noqa: UP007
-    return TypeAliasType(name, union)  # type: ignore[misc]
+        return alias(name, every[0])
+    return alias(name, typing.Annotated[_union(every), Field(discriminator=discriminator)])
+
+
+def _union(members: Iterable[Any]) -> Any:
+    return reduce(operator.or_, members)
 
 
 def _schema(plug_in: type[Any], suffix: str) -> type[PlugInDocument]:
@@ -72,13 +71,14 @@ def _schema(plug_in: type[Any], suffix: str) -> type[PlugInDocument]:
     hints = typing.get_type_hints(plug_in, include_extras=True)
     options = {f.name: _option(f, hints[f.name]) for f in dataclasses.fields(plug_in)}
     name = plug_in.__name__ if plug_in.__name__.endswith(suffix) else plug_in.__name__ + suffix
-    model: type[PlugInDocument] = create_model(
+    make: Any = create_model
+    model: type[PlugInDocument] = make(
         name,
         __base__=PlugInDocument,
         __doc__=summary(plug_in),
         __module__=plug_in.__module__,
-        __validators__={"buildable": model_validator(mode="after")(buildable)},  # type: ignore[dict-item]
-        kind=(Literal[plug_in.kind], Field(description="which one")),  # type: ignore[name-defined]
+        __validators__={"buildable": model_validator(mode="after")(buildable)},
+        kind=(_LITERAL[plug_in.kind], Field(description="which one")),
         **options,
     )
     model.build = build  # type: ignore[method-assign]
@@ -114,9 +114,9 @@ def _json_type(hint: Any) -> Any:
         return Integer if hint is int else Double
     origin, arguments = typing.get_origin(hint), typing.get_args(hint)
     if origin in (typing.Union, types.UnionType):
-        return typing.Union[tuple(map(_json_type, arguments))]  # noqa: UP007
+        return _union(map(_json_type, arguments))
     if origin in (tuple, list) or hint is np.ndarray:
-        inner = list[_json_type(arguments[0])]  # type: ignore[misc]
+        inner = _LIST[_json_type(arguments[0])]
         if origin is tuple and arguments[-1] is not Ellipsis:
             return typing.Annotated[inner, Field(min_length=len(arguments), max_length=len(arguments))]
         return inner
@@ -129,8 +129,3 @@ def _frozen(value: Any) -> Any:
 
 def _thawed(value: Any) -> Any:
     return [_thawed(item) for item in value] if isinstance(value, tuple) else value
-
-
-def camel(name: str) -> str:
-    """The name of a field in a document."""
-    return to_camel(name)

@@ -18,9 +18,12 @@ class SignalsRequest(CamelModel):
         default="multisine", description="exactly the designed lines, or noise with the designed spectrum"
     )
     samples: Annotated[Integer, Field(ge=2, le=10_000_000)] | None = Field(
-        default=None, description="samples of one period; null: those of the design divided by `periods`"
+        default=None,
+        description="samples of one period; null: the period of designed lines, else those of the design by `periods`",
     )
-    periods: Annotated[Integer, Field(ge=1, le=10_000)] = Field(default=1, description="periods that share the energy")
+    periods: Annotated[Integer, Field(ge=1, le=10_000)] | None = Field(
+        default=None, description="periods that share the energy; null: as many as the duration of the design holds"
+    )
     amplitude_limit: Positive | None = Field(default=None, description="largest value; null: none")
     seed: Annotated[Integer, Field(ge=0, le=2**53)] = Field(default=0, description="of the phases or the noise")
 

@@ -70,7 +70,7 @@ def file_format(name: str) -> Literal["csv", "npz", "mat"]:
     """The format of a file by the end of its name."""
     for ending in ("csv", "npz", "mat"):
         if name.lower().endswith(f".{ending}"):
-            return ending  # type: ignore[return-value]
+            return ending
     if name.lower().endswith((".txt", ".tsv")):
         return "csv"
     raise UnprocessableError.at("/file", "the name of the file must end in .csv, .npz or .mat")

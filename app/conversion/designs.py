@@ -1,0 +1,121 @@
+"""Designs: requests to problems of oed, what oed found to documents."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import product
+
+import numpy as np
+
+from app.schemas.designs import MAX_POINTS, AxesGrid, Box, DesignRequest, PointGrid
+from identification.arrays import FloatArray
+from identification.errors import MisuseError, RangeError, ShapeError
+from identification.models import LpvModel
+from identification.scheduling import OneVariableBasis, ParameterDependence
+
+SAME_POINT = 1e-9
+
+
+@dataclass(frozen=True)
+class _OnWholeRange:
+    """Basis functions that keep the range that they were defined on when the range of the search is a part of it."""
+
+    basis: OneVariableBasis
+    minimum: float
+    maximum: float
+
+    @property
+    def size(self) -> int:
+        return self.basis.size
+
+    def evaluate(self, p: FloatArray, minimum: float, maximum: float) -> FloatArray:
+        """The functions at p (M,), as (M, size)."""
+        return self.basis.evaluate(p, self.minimum, self.maximum)
+
+
+def candidate_points(request: DesignRequest, dependence: ParameterDependence) -> FloatArray:
+    """The operating points (M, s) to choose from, without excluded ones; raises ShapeError and RangeError."""
+    given = request.operating_points
+    if isinstance(given, PointGrid):
+        points = dependence.points(_rectangular(given.points))
+    else:
+        points = dependence.points(_grid(given))
+    excluded = dependence.points(_rectangular(request.excluded_points)) if request.excluded_points else points[:0]
+    spans = np.array([v.maximum - v.minimum for v in dependence.variables])
+    kept = [point for point in points if not _is_among(point, excluded, spans)]
+    if not kept:
+        raise RangeError("all operating points are excluded", "excluded_points")
+    return np.array(kept)
+
+
+def energy_caps(request: DesignRequest, points: FloatArray, dependence: ParameterDependence) -> FloatArray | None:
+    """α (M,), infinite where there is no cap; None when there is none at all."""
+    caps = request.energy_caps
+    if caps is None or (caps.default is None and not caps.per_point):
+        return None
+    spans = np.array([v.maximum - v.minimum for v in dependence.variables])
+    limits = np.full(len(points), np.inf if caps.default is None else caps.default)
+    for cap in caps.per_point:
+        same = np.all(abs(points - np.array(cap.operating_point)) <= SAME_POINT * spans, axis=1)
+        if not same.any():
+            raise RangeError(f"{cap.operating_point} is none of the operating points to choose from", "energy_caps")
+        limits[same] = cap.energy
+    return limits
+
+
+def searched_model(request: DesignRequest, model: LpvModel) -> LpvModel:
+    """The model with its range narrowed to the box, when the design searches one."""
+    box = request.operating_points
+    if not isinstance(box, Box):
+        return model
+    variables = model.dependence.variables
+    model.dependence.points([box.minimum, box.maximum])
+    ranges = zip(box.minimum, box.maximum, strict=True)
+    narrowed = tuple(
+        replace(variable, minimum=low, maximum=high) for variable, (low, high) in zip(variables, ranges, strict=True)
+    )
+    bases = tuple(
+        replace(
+            basis,
+            factors=tuple(
+                _OnWholeRange(factor, variable.minimum, variable.maximum)
+                for factor, variable in zip(basis.factors, variables, strict=True)
+            ),
+        )
+        for basis in model.dependence.bases
+    )
+    return replace(model, dependence=ParameterDependence(narrowed, bases))
+
+
+def prior_information(model: LpvModel, known: bool) -> FloatArray:
+    """P_θ⁻¹ of a model; raises MisuseError when its covariance is not known or singular."""
+    if not known:
+        raise MisuseError("the model has no covariance that could be prior information", "use_prior_information")
+    scale = np.sqrt(np.diagonal(model.covariance))
+    if np.any(scale <= 0) or np.linalg.cond(model.covariance / np.outer(scale, scale)) > 1e13:
+        raise MisuseError("the covariance of the model is singular", "use_prior_information")
+    inverse = np.linalg.inv(model.covariance / np.outer(scale, scale)) / np.outer(scale, scale)
+    return np.asarray((inverse + inverse.T) / 2)
+
+
+def _grid(given: AxesGrid | Box) -> FloatArray:
+    if isinstance(given, AxesGrid):
+        spans = [(axis.minimum, axis.maximum, axis.count) for axis in given.axes]
+    elif len(given.minimum) != len(given.maximum):
+        raise ShapeError("minimum and maximum differ in length", "operating_points")
+    else:
+        spans = [(low, high, given.starting_count) for low, high in zip(given.minimum, given.maximum, strict=True)]
+    if np.prod([float(count) for _, _, count in spans]) > MAX_POINTS:
+        raise RangeError(f"the grid has more than {MAX_POINTS} points", "operating_points")
+    if any(low > high or (low == high and count > 1) for low, high, count in spans):
+        raise RangeError("each axis must rise", "operating_points")
+    return np.array(list(product(*(np.linspace(low, high, count) for low, high, count in spans))))
+
+
+def _rectangular(points: Sequence[Sequence[float]]) -> FloatArray:
+    if len({len(point) for point in points}) > 1:
+        raise ShapeError("the operating points differ in length", "operating_points")
+    return np.array(points, dtype=float)
+
+
+def _is_among(point: FloatArray, others: FloatArray, spans: FloatArray) -> bool:
+    return bool(np.any(np.all(abs(others - point) <= SAME_POINT * spans, axis=1)))

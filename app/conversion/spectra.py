@@ -1,0 +1,49 @@
+"""Designed spectra to documents and back."""
+
+import numpy as np
+
+from app.schemas.designs import (
+    FirSpectrumDocument,
+    LineSpectrumDocument,
+    Spectrum,
+    SpectrumCurve,
+)
+from oed.spectra.fir import FirSpectrum
+from oed.spectra.lines import LineSpectrum
+
+CURVE_POINTS = 201
+
+
+def spectrum_document(spectrum: FirSpectrum | LineSpectrum) -> Spectrum:
+    """The document of a designed spectrum."""
+    if isinstance(spectrum, LineSpectrum):
+        return LineSpectrumDocument(
+            kind="lines",
+            line_indices=spectrum.indices.tolist(),
+            frequencies_rad_per_second=spectrum.frequencies.tolist(),
+            energies=spectrum.energies.tolist(),
+            period_samples=spectrum.samples,
+        )
+    return FirSpectrumDocument(kind="fir", coefficients=spectrum.coefficients.tolist())
+
+
+def spectrum_object(document: Spectrum, sample_time: float) -> FirSpectrum | LineSpectrum:
+    """The designed spectrum of a document."""
+    if isinstance(document, LineSpectrumDocument):
+        return LineSpectrum(
+            np.array(document.frequencies_rad_per_second),
+            np.array(document.energies),
+            np.array(document.line_indices, dtype=np.int64),
+            document.period_samples,
+        )
+    return FirSpectrum(np.array(document.coefficients), sample_time)
+
+
+def curve(spectrum: FirSpectrum | LineSpectrum, sample_time: float) -> SpectrumCurve:
+    """What to plot: the lines, or the density up to the Nyquist frequency."""
+    if isinstance(spectrum, LineSpectrum):
+        return SpectrumCurve(
+            frequencies_rad_per_second=spectrum.frequencies.tolist(), values=spectrum.energies.tolist()
+        )
+    omega = np.linspace(0, np.pi / sample_time, CURVE_POINTS)
+    return SpectrumCurve(frequencies_rad_per_second=omega.tolist(), values=spectrum.density(omega).tolist())

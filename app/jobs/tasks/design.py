@@ -1,0 +1,136 @@
+"""Designs the experiments of least energy."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from pydantic.alias_generators import to_camel
+
+from app import __version__
+from app.arrays import finite_list_or_none, finite_or_none
+from app.conversion.designs import candidate_points, energy_caps, prior_information, searched_model
+from app.conversion.fields import field_named
+from app.conversion.models import kept_model, outcome_document, standard_deviations
+from app.conversion.spectra import curve, spectrum_document
+from app.jobs.task import TaskContext, TaskResult
+from app.schemas.designs import BindingDocument, Box, DesignedExperimentDocument, DesignRequest
+from app.schemas.models import Model
+from app.schemas.plants import Plant
+from identification.errors import MisuseError
+from identification.models import LpvModel
+from oed.design import Binding, Design, design
+from oed.problem import DesignProblem, Target
+
+KIND = "design"
+FIELDS = {
+    "points": "operatingPoints",
+    "operating_points": "operatingPoints",
+    "excluded_points": "excludedPoints",
+    "energy_caps": "energyCaps",
+    "caps": "energyCaps",
+    "prior_information": "usePriorInformation",
+    "use_prior_information": "usePriorInformation",
+    "band": "band",
+    "samples": "samples",
+    "sample_time": "sampleTimeSeconds",
+    "targets": "targets",
+    "model": "modelId",
+    "degree": "spectrumFamily/degree",
+}
+
+
+def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
+    """State the problem, solve it, describe the answer."""
+    context.progress(0.02, "stating the problem")
+    plant = Plant.model_validate(payload["plant"])
+    request = DesignRequest.model_validate(payload["request"])
+    document = Model.model_validate(payload["model"])
+    model = kept_model(document, plant)
+    with field_named(FIELDS, "operatingPoints"):
+        problem = stated_problem(request, model, document.covariance is not None)
+        found = design(problem, progress=_reporter(context, request.tolerance))
+    return TaskResult(_document(payload, model, problem, found))
+
+
+def stated_problem(request: DesignRequest, model: LpvModel, covariance_known: bool) -> DesignProblem:
+    """The problem of a request; raises MisuseError."""
+    searched = searched_model(request, model)
+    points = candidate_points(request, searched.dependence)
+    band = request.band
+    return DesignProblem(
+        model=searched,
+        points=points,
+        targets=_fitting_targets(request, searched),
+        family=request.spectrum_family.build(),
+        samples=request.samples,
+        caps=energy_caps(request, points, searched.dependence),
+        prior_information=prior_information(model, covariance_known) if request.use_prior_information else None,
+        band=None if band is None else (band.minimum_rad_per_second, band.maximum_rad_per_second),
+        sample_time=model.structure.sample_time or request.sample_time_seconds,
+        tolerance=request.tolerance,
+        box=isinstance(request.operating_points, Box),
+    )
+
+
+def _fitting_targets(request: DesignRequest, model: LpvModel) -> tuple[Target, ...]:
+    targets = []
+    for i, given in enumerate(request.targets):
+        target: Target = given.build()
+        try:
+            target.matrices(model)
+        except MisuseError as error:
+            raise MisuseError(str(error), f"targets/{i}/{to_camel(error.field or '')}".rstrip("/")) from error
+        targets.append(target)
+    return tuple(targets)
+
+
+def _reporter(context: TaskContext, tolerance: float) -> Callable[[int, float], None]:
+    def report(iteration: int, gap: float) -> None:
+        reached = np.log(max(min(gap, 1.0), tolerance)) / np.log(tolerance) if np.isfinite(gap) else 0.0
+        context.progress(0.05 + 0.9 * float(reached), f"iteration {iteration}, gap {gap:.1e}")
+
+    return report
+
+
+def _document(payload: dict[str, Any], model: LpvModel, problem: DesignProblem, found: Design) -> dict[str, Any]:
+    experiments = [
+        DesignedExperimentDocument(
+            operating_point=list(experiment.operating_point),
+            energy=experiment.energy,
+            spectrum=spectrum_document(experiment.spectrum),  # type: ignore[arg-type]
+            curve=curve(experiment.spectrum, problem.step),  # type: ignore[arg-type]
+        )
+        for experiment in found.experiments
+    ]
+    return {
+        "softwareVersion": __version__,
+        "request": payload["request"],
+        "modelId": payload["model"]["id"],
+        "outcome": _json(outcome_document(found.outcome)),
+        "sampleTimeSeconds": problem.step,
+        "experiments": [_json(experiment) for experiment in experiments],
+        "totalEnergy": finite_or_none(found.total_energy),
+        "lowerBound": finite_or_none(found.lower_bound),
+        "gap": finite_or_none(found.gap),
+        "samples": found.samples,
+        "requiredSamples": finite_or_none(found.required_samples),
+        "parameterNames": list(model.parameter_names),
+        "expectedCovariance": finite_list_or_none(found.expected_covariance),
+        "expectedStandardDeviations": standard_deviations(found.expected_covariance),
+        "binding": [_json(_binding(problem, binding)) for binding in found.binding],
+    }
+
+
+def _binding(problem: DesignProblem, binding: Binding) -> BindingDocument:
+    is_target = binding.what == "target"
+    return BindingDocument(
+        what=binding.what,
+        target_index=binding.index if is_target else None,
+        operating_point=None if is_target else problem.points[binding.index].tolist(),
+        multiplier=finite_or_none(binding.multiplier),
+    )
+
+
+def _json(document: Any) -> dict[str, Any]:
+    result: dict[str, Any] = document.model_dump(by_alias=True, mode="json")
+    return result

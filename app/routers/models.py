@@ -1,0 +1,69 @@
+"""Models: identify, state, list, look, evaluate."""
+
+from typing import Annotated
+
+from fastapi import APIRouter, Query, Response
+
+from app.dependencies import ContainerDependency, Cursor, IdempotencyKey, Limit, ResourcesDependency
+from app.schemas.jobs import Job
+from app.schemas.models import Model, ModelFrequencyResponse, ModelList, ModelRequest, StatedModelRequest
+from app.services import model_responses, models
+from app.services.jobs import accepted
+
+router = APIRouter(prefix="/models", tags=["models"])
+
+Finite = Annotated[float, Query(allow_inf_nan=False)]
+
+
+@router.post("", status_code=202)
+def create_model(
+    body: ModelRequest, container: ContainerDependency, response: Response, key: IdempotencyKey = None
+) -> Job:
+    """Identify a model from experiments."""
+    return accepted(models.submit(container, body, key), response)
+
+
+@router.post("/stated", status_code=201)
+def state_model(body: StatedModelRequest, resources: ResourcesDependency, response: Response) -> Model:
+    """State a model, e.g. a first guess to design the first experiments with."""
+    model = models.state(resources, body)
+    response.headers["Location"] = f"/v1/models/{model.id}"
+    return model
+
+
+@router.get("")
+def list_models(
+    resources: ResourcesDependency,
+    plant_id: Annotated[str | None, Query(alias="plantId", max_length=64, description="only of this plant")] = None,
+    limit: Limit = 50,
+    cursor: Cursor = None,
+) -> ModelList:
+    """Models, newest first."""
+    return models.page(resources, plant_id, limit, cursor)
+
+
+@router.get("/{modelId}")
+def get_model(modelId: str, resources: ResourcesDependency) -> Model:
+    """One model with its accuracy and where it came from."""
+    return models.get(resources, modelId)
+
+
+@router.get("/{modelId}/frequency-response")
+def get_model_frequency_response(
+    modelId: str,
+    resources: ResourcesDependency,
+    operating_point: Annotated[
+        list[Finite], Query(alias="operatingPoint", max_length=10, description="one value a scheduling variable")
+    ],
+    minimum: Annotated[
+        float, Query(alias="minimumRadPerSecond", ge=0, allow_inf_nan=False, description="lowest frequency")
+    ],
+    maximum: Annotated[
+        float, Query(alias="maximumRadPerSecond", gt=0, allow_inf_nan=False, description="highest frequency")
+    ],
+    count: Annotated[
+        int, Query(ge=1, le=2000, description="frequencies, spread logarithmically unless the lowest is zero")
+    ] = 200,
+) -> ModelFrequencyResponse:
+    """The frequency response at one operating point with 95 % bands."""
+    return model_responses.frequency_response(resources, modelId, operating_point, minimum, maximum, count)

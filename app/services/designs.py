@@ -1,0 +1,68 @@
+"""Designs: asked for, and made in a job."""
+
+from typing import Any
+
+from app.container import Container
+from app.conversion.designs import candidate_points, energy_caps, searched_model
+from app.conversion.misuse import pointing
+from app.conversion.models import kept_model
+from app.errors import UnprocessableError
+from app.jobs.records import JobRecord
+from app.schemas.designs import Design, DesignList, DesignRequest
+from app.schemas.models import Model
+from app.schemas.plants import Plant
+from app.services.documents import fields, items, named, of_plant
+from app.services.jobs import fingerprint
+from app.services.models import model_of
+from app.services.plants import plant_of
+from app.store.resources import Resource, ResourceRepository
+
+KIND = "designs"
+POINTERS = {"excluded_points": "/excludedPoints", "energy_caps": "/energyCaps"}
+
+
+def submit(container: Container, request: DesignRequest, key: str | None) -> JobRecord:
+    """Start the job that designs experiments."""
+    plant = plant_of(named(container.resources, "plants", request.plant_id, "/plantId"))
+    row = of_plant(named(container.resources, "models", request.model_id, "/modelId"), plant.id, "/modelId")
+    task = payload(plant, model_of(row), request)
+    mark = fingerprint("createDesign", request.model_dump(mode="json"))
+    return container.ledger.submit("design", task, KIND, plant.id, key, mark)
+
+
+def payload(plant: Plant, model: Model, request: DesignRequest) -> dict[str, Any]:
+    """What the task gets; raises UnprocessableError when the request does not fit plant and model."""
+    known = kept_model(model, plant)
+    with pointing(POINTERS, default="/operatingPoints"):
+        searched = searched_model(request, known)
+        points = candidate_points(request, searched.dependence)
+    with pointing(POINTERS, default="/energyCaps"):
+        energy_caps(request, points, searched.dependence)
+    if not known.structure.is_discrete and request.sample_time_seconds is None:
+        raise UnprocessableError.at("/sampleTimeSeconds", "needed for a plant in continuous time")
+    if request.use_prior_information and model.covariance is None:
+        raise UnprocessableError.at("/usePriorInformation", "the model has no covariance")
+    if request.band is not None and request.band.minimum_rad_per_second > request.band.maximum_rad_per_second:
+        raise UnprocessableError.at("/band", "the band must rise")
+    return {"plant": _json(plant), "model": _json(model), "request": _json(request)}
+
+
+def design_of(resource: Resource) -> Design:
+    """The design in a row."""
+    return Design.model_validate(fields(resource, "plantId", "jobId"))
+
+
+def get(resources: ResourceRepository, design_id: str) -> Design:
+    """The design of an identifier."""
+    return design_of(resources.get(KIND, design_id))
+
+
+def page(resources: ResourceRepository, plant_id: str | None, limit: int, cursor: str | None) -> DesignList:
+    """Part of the list of designs."""
+    found = resources.list(KIND, plant_id, limit, cursor)
+    return DesignList(items=items(found, design_of), next_cursor=found.next_cursor)
+
+
+def _json(document: Any) -> dict[str, Any]:
+    result: dict[str, Any] = document.model_dump(by_alias=True, mode="json")
+    return result
