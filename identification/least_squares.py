@@ -29,7 +29,7 @@ class LeastSquaresSolution:
     def covariance(self) -> FloatArray:
         """(JᵀJ)⁻¹, the covariance of x where r has unit variance; infinite where J has no full column rank."""
         scale, factor = _scaled_factor(self.jacobian)
-        if _is_singular(factor):
+        if _singular_factor(factor):
             return np.full((len(self.x), len(self.x)), np.inf)
         inverse = np.linalg.inv(factor) / scale[:, None]
         return inverse @ inverse.T
@@ -120,13 +120,18 @@ def _scaled_factor(matrix: FloatArray) -> tuple[FloatArray, FloatArray]:
     return scale, np.asarray(np.linalg.qr(scaled, mode="r"))
 
 
-def _is_singular(factor: FloatArray) -> bool:
+def is_singular(jacobian: FloatArray) -> bool:
+    """Whether J (R, n), its columns scaled to length one, has no full column rank up to rounding."""
+    return _singular_factor(_scaled_factor(jacobian)[1])
+
+
+def _singular_factor(factor: FloatArray) -> bool:
     values = np.linalg.svd(factor, compute_uv=False)
     return bool(values[-1] <= 1e-10 * values[0])
 
 
 def _outcome(status: str, jacobian: FloatArray, iterations: int) -> Outcome:
-    if _is_singular(_scaled_factor(jacobian)[1]):
+    if is_singular(jacobian):
         advice = "the data do not determine all parameters; excite more frequencies or choose a lower order"
         return Outcome("not_identifiable", advice, iterations)
     if status == "converged":

@@ -10,12 +10,12 @@ from identification.arrays import FloatArray
 from identification.errors import MisuseError, NotIdentifiableError
 from identification.estimates import LocalEstimate, LpvEstimate
 from identification.initial_conditions import InitialConditions
-from identification.least_squares import LeastSquaresSolution, levenberg_marquardt
+from identification.least_squares import LeastSquaresSolution, is_singular, levenberg_marquardt
 from identification.likelihood import require_same_sampling
 from identification.lpv.generalised_least_squares import GeneralisedLeastSquares
 from identification.lpv.joint_residuals import JointResiduals
 from identification.lpv.joint_tests import joint_tests
-from identification.lpv.pooled_start import pooled_starts
+from identification.lpv.pooled_start import pooled_starts, shrunk_zeros
 from identification.lpv.stacking import asymptotics_advice, stacked_points
 from identification.lti.multistart import lowest_minimum
 from identification.models import LpvModel, RationalStructure
@@ -90,11 +90,12 @@ class JointLikelihood:
         residuals.require_enough()
         starts = _starts(structure, dependence, experiments, local, prior, transfer)
         solution, variances = _fit(residuals, starts)
-        model = LpvModel(
-            structure, dependence, solution.x, solution.covariance, residuals.reported_variance(variances, solution)
-        )
-        tests = joint_tests(residuals, solution, variances)
-        return LpvEstimate(model, _outcome(solution.outcome, structure, experiments), tests, tuple(local))
+        outcome = _outcome(solution, residuals, variances)
+        determined = outcome.status != "not_identifiable"
+        covariance = solution.covariance if determined else np.full((dependence.size, dependence.size), np.inf)
+        model = LpvModel(structure, dependence, solution.x, covariance, residuals.reported_variance(variances))
+        tests = joint_tests(residuals, solution) if determined else ()
+        return LpvEstimate(model, outcome, tests, tuple(local))
 
     @classmethod
     def example(cls) -> "JointLikelihood":
@@ -180,6 +181,18 @@ def _require_information(
         )
 
 
-def _outcome(outcome: Outcome, structure: RationalStructure, experiments: Sequence[Measurement]) -> Outcome:
-    advice = outcome.advice or asymptotics_advice(structure, [e for e in experiments if isinstance(e, TimeRecord)])
-    return Outcome(outcome.status, advice, outcome.iterations)
+def _outcome(solution: LeastSquaresSolution, residuals: JointResiduals, variances: dict[str, float]) -> Outcome:
+    """The outcome of the search, unless the experiments leave parameters open for every model alike.
+
+    At the edge of stability a record's noise can seem to determine what its input does not excite; a model whose zeros
+    lie well inside shows it.
+    """
+    structure = residuals.structure
+    if structure.is_discrete:
+        inside = shrunk_zeros(structure, residuals.transfer, solution.x, 0.7)
+        if is_singular(residuals.white(inside, variances)[1]):
+            advice = "the experiments do not determine all parameters; excite more frequencies or choose a lower order"
+            return Outcome("not_identifiable", advice, solution.outcome.iterations)
+    records = [e for e in residuals.experiments if isinstance(e, TimeRecord)]
+    advice = solution.outcome.advice or asymptotics_advice(structure, records)
+    return Outcome(solution.outcome.status, advice, solution.outcome.iterations)

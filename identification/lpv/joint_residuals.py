@@ -88,7 +88,7 @@ class JointResiduals:
         return response_errors(self.structure, zeta, data)
 
     def deviation(self, m: int, variances: Mapping[str, float]) -> float:
-        """s_m: the root of the group's variance, or for a stated variance what its own uncertainty demands, else one."""
+        """s_m: the root of the group's variance, or what the uncertainty of a stated variance demands."""
         group, data = self.group_of[m], self.experiments[m]
         if group is not None:
             return float(np.sqrt(variances[group]))
@@ -153,7 +153,7 @@ class JointResiduals:
         largest = max(float(np.mean(signal**2)) for signal in signals)
         return max(float(np.finfo(float).eps) ** 2 * largest, float(np.finfo(float).tiny))
 
-    def reported_variance(self, variances: Mapping[str, float], solution: LeastSquaresSolution) -> float:
+    def reported_variance(self, variances: Mapping[str, float]) -> float:
         """σ̂_e²: the mean over the groups of records; without records the scale of the responses, one where known."""
         records = [variance for group, variance in variances.items() if group.startswith("record")]
         return float(np.mean(records)) if records else float(variances.get("responses", 1.0))

@@ -1,7 +1,5 @@
 """Tests of a model that all experiments share."""
 
-from collections.abc import Mapping
-
 import numpy as np
 
 from identification.arrays import FloatArray
@@ -14,9 +12,7 @@ from identification.signals import FrequencyResponse, TimeRecord
 from identification.whiteness import chi_square, input_independence, orthonormal, whiteness
 
 
-def joint_tests(
-    residuals: JointResiduals, solution: LeastSquaresSolution, variances: Mapping[str, float]
-) -> tuple[TestResult, ...]:
+def joint_tests(residuals: JointResiduals, solution: LeastSquaresSolution) -> tuple[TestResult, ...]:
     """Whether ζ(p) = T(p) θ holds at all operating points, and for each experiment whether its residual is noise.
 
         Σ_m ‖Q_mᵀ r_m‖² ~ χ²(Σ_m rank J_m − k),   Q_m an orthonormal basis of what ∂r_m/∂ζ spans

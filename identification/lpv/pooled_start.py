@@ -150,16 +150,22 @@ def _drawn_in(structure: RationalStructure, transfer: FloatArray, theta: FloatAr
         return theta
     if not structure.is_discrete:
         return _mirrored(structure, transfer, theta)
+    for factor in (0.999, 0.99, 0.97, 0.95, 0.9, 0.8, 0.6, 0.4, 0.2, 0.0):
+        shrunk = shrunk_zeros(structure, transfer, theta, factor)
+        if np.all(structure.stable(transfer @ shrunk)):
+            return shrunk
+    return None
+
+
+def shrunk_zeros(structure: RationalStructure, transfer: FloatArray, theta: FloatArray, factor: float) -> FloatArray:
+    """θ (k,) with every zero of A, C and D multiplied by a factor at all operating points, in discrete time."""
     powers = np.zeros(structure.size)
     for first, count in ((0, structure.n_a), (structure.n_plant, structure.n_c)):
         powers[first : first + count] = np.arange(1, count + 1)
     powers[structure.n_plant + structure.n_c :] = np.arange(1, structure.n_d + 1)
-    exponent = np.abs(transfer).sum(axis=0).T @ powers / np.maximum(np.abs(transfer).sum(axis=(0, 1)), 1e-300)
-    for factor in (0.999, 0.99, 0.97, 0.95, 0.9, 0.8, 0.6, 0.4, 0.2, 0.0):
-        shrunk = theta * factor**exponent
-        if np.all(structure.stable(transfer @ shrunk)):
-            return np.asarray(shrunk)
-    return None
+    size = np.abs(transfer).sum(axis=0)
+    exponents = powers[np.argmax(size, axis=0)]
+    return np.asarray(theta * factor**exponents)
 
 
 def _mirrored(structure: RationalStructure, transfer: FloatArray, theta: FloatArray) -> FloatArray | None:

@@ -121,8 +121,8 @@ def _excited_directions(structure: RationalStructure, record: TimeRecord, initia
 def _outcome(structure: RationalStructure, solution: LeastSquaresSolution, excited: int) -> Outcome:
     if excited < structure.n_plant:
         advice = (
-            f"the input tells only {excited} of the {structure.n_plant} coefficients of G apart; excite more frequencies,"
-            " choose lower orders, or estimate jointly with other operating points"
+            f"the input tells only {excited} of the {structure.n_plant} coefficients of G apart; excite more"
+            " frequencies, choose lower orders, or estimate jointly with other operating points"
         )
         return Outcome("not_identifiable", advice, solution.outcome.iterations)
     if structure.n_noise and solution.cost <= 1e-26 * len(solution.residual):
