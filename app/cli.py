@@ -1,0 +1,54 @@
+"""The command line: one function a command; what it needs is imported when it is called."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+application = typer.Typer(
+    name="lpv-oed",
+    help="Design, measure and identify linear parameter-varying systems with the least input energy.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+
+RequestFile = Annotated[
+    Path, typer.Argument(exists=True, dir_okay=False, readable=True, help="YAML or JSON, see examples/")
+]
+Output = Annotated[
+    Path | None, typer.Option("--output", "-o", help="folder for the results; default: beside FILE, named after it")
+]
+
+
+@application.command()
+def serve() -> None:
+    """Start the service; LPV_OED_HOST, LPV_OED_PORT and the other LPV_OED_ variables set it up."""
+    from app.serve import serve as run
+
+    run()
+
+
+@application.command()
+def design(file: RequestFile, output: Output = None) -> None:
+    """Design experiments without a server; FILE has plant, model, design and, if wanted, signals."""
+    from app.offline.commands import design as run
+
+    run(file, output or file.with_name(f"{file.stem}-designed"))
+
+
+@application.command()
+def identify(file: RequestFile, output: Output = None) -> None:
+    """Identify a model without a server; FILE has plant, experiments (data or data files) and model."""
+    from app.offline.commands import identify as run
+
+    run(file, output or file.with_name(f"{file.stem}-identified"))
+
+
+def main() -> None:
+    """The program lpv-oed."""
+    application()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,96 @@
+"""The commands `identify` and `design`."""
+
+from collections.abc import Callable
+from functools import wraps
+from pathlib import Path
+from typing import Any, Concatenate, ParamSpec
+
+import typer
+from rich.console import Console
+
+from app.errors import ProblemError
+from app.offline import results
+from app.offline.documents import checked, load, section
+from app.offline.experiments import experiments_of
+from app.offline.workplace import DESIGN_ID, MODEL_ID, PLANT_ID, Workplace, stored, workplace
+from app.schemas.designs import Design, DesignRequest
+from app.schemas.models import Model, ModelRequest, StatedModelRequest
+from app.schemas.plants import Plant, PlantRequest
+from app.schemas.signals import Signals, SignalsRequest
+from app.services import designs, models, plants, signals
+from identification.errors import MisuseError
+
+Parameters = ParamSpec("Parameters")
+
+
+def _explained(command: Callable[Concatenate[Path, Parameters], None]) -> Callable[Concatenate[Path, Parameters], None]:
+    """A bad request ends the program with what is wrong and where, instead of a traceback."""
+
+    @wraps(command)
+    def run(file: Path, *arguments: Parameters.args, **options: Parameters.kwargs) -> None:
+        console = Console(stderr=True, highlight=False, markup=False)
+        try:
+            command(file, *arguments, **options)
+        except ProblemError as error:
+            console.print(f"{file}: {error.detail}")
+            for problem in error.errors:
+                console.print(f"  {problem.pointer or '/'}: {problem.detail}")
+        except MisuseError as error:
+            console.print(f"{file}: {error}" + (f" (/{error.field})" if error.field else ""))
+        else:
+            return
+        raise typer.Exit(1)
+
+    return run
+
+
+@_explained
+def identify(file: Path, output: Path) -> None:
+    """Identify a model from the experiments in a request file."""
+    content = load(file)
+    plant = _plant(content)
+    with workplace() as place:
+        experiments = experiments_of(place, plant, section(content, "experiments"), file.parent)
+        names = [experiment.id for experiment, _ in experiments]
+        asked = {"plantId": PLANT_ID, "experimentIds": names, **section(content, "model")}
+        request = checked(ModelRequest, asked, "/model")
+        by_name = {experiment.id: (experiment, arrays) for experiment, arrays in experiments}
+        chosen = [by_name[name] for name in request.experiment_ids if name in by_name]
+        found = place.run("identification", models.payload(plant, request, chosen))
+    model = Model.model_validate(stored(found.document, MODEL_ID, plantId=PLANT_ID, jobId=None))
+    results.write_model(output, model, [experiment for experiment, _ in chosen])
+
+
+@_explained
+def design(file: Path, output: Path) -> None:
+    """Design the experiments of a request file, and make their signals when it asks for them."""
+    content = load(file)
+    plant = _plant(content)
+    model = _model(plant, section(content, "model"), file.parent)
+    asked = {"plantId": PLANT_ID, "modelId": model.id, **section(content, "design")}
+    request = checked(DesignRequest, asked, "/design")
+    with workplace() as place:
+        found = place.run("design", designs.payload(plant, model, request))
+        made = Design.model_validate(stored(found.document, DESIGN_ID, plantId=PLANT_ID, jobId=None))
+        results.write_design(output, made)
+        if "signals" in content:
+            _signals(place, made, checked(SignalsRequest, content["signals"] or {}, "/signals"), output)
+
+
+def _signals(place: Workplace, design: Design, request: SignalsRequest, output: Path) -> None:
+    found = place.run("signals", signals.payload(design, request))
+    document = stored(found.document, "signals", plantId=PLANT_ID, jobId=None)
+    results.write_signals(output, Signals.model_validate(document), place.arrays.get(found.arrays or ""))
+
+
+def _plant(content: dict[str, Any]) -> Plant:
+    request = checked(PlantRequest, section(content, "plant"), "/plant")
+    return Plant.model_validate(stored(plants.described(request), PLANT_ID))
+
+
+def _model(plant: Plant, given: Any, folder: Path) -> Model:
+    """A stated model, or the model.json that `identify` wrote."""
+    if isinstance(given, str):
+        return checked(Model, {**load(folder / given), "plantId": PLANT_ID}, "/model")
+    request = checked(StatedModelRequest, {"plantId": PLANT_ID, **given}, "/model")
+    return Model.model_validate(stored(models.stated(plant, request), MODEL_ID, plantId=PLANT_ID, jobId=None))

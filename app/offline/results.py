@@ -1,0 +1,79 @@
+"""What the commands leave behind, and what they say about it."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel
+from rich.console import Console
+from rich.table import Table
+
+from app.files import npz_file
+from app.files.stored import arrays_file
+from app.schemas.designs import Design
+from app.schemas.experiments import Experiment
+from app.schemas.models import Model
+from app.schemas.signals import Signals
+
+
+def write_model(folder: Path, model: Model, experiments: Sequence[Experiment]) -> None:
+    """model.json, model.npz (theta, covariance, operating points and local coefficients), experiments.json."""
+    _write(folder, "model.json", model)
+    arrays = {
+        "theta": np.array(model.theta),
+        "operatingPoints": np.array([local.operating_point for local in model.local_models]),
+        "zeta": np.array([local.zeta for local in model.local_models]),
+    }
+    if model.covariance is not None:
+        arrays["covariance"] = np.array(model.covariance)
+    (folder / "model.npz").write_bytes(npz_file.write(arrays))
+    for experiment in experiments:
+        _write(folder, f"{experiment.id}.json", experiment)
+    table = Table("parameter", "value", "standard deviation", title=f"identification {_status(model.outcome)}")
+    deviations = model.standard_deviations or [float("nan")] * len(model.theta)
+    for name, value, deviation in zip(model.parameter_names, model.theta, deviations, strict=True):
+        table.add_row(name, f"{value:.6g}", f"{deviation:.3g}")
+    _say(folder, table)
+
+
+def write_design(folder: Path, design: Design) -> None:
+    """design.json."""
+    _write(folder, "design.json", design)
+    energy = "no energy" if design.total_energy is None else f"energy {design.total_energy:.6g}"
+    gap = "" if design.gap is None else f", certified gap {design.gap:.1e}"
+    table = Table("operating point", "energy", title=f"design {_status(design.outcome)}: {energy}{gap}")
+    for experiment in design.experiments:
+        table.add_row(", ".join(f"{value:g}" for value in experiment.operating_point), f"{experiment.energy:.6g}")
+    _say(folder, table)
+
+
+def write_signals(folder: Path, signals: Signals, arrays: Mapping[str, NDArray[Any]]) -> None:
+    """signals.json, and signal-0.csv, signal-0.npz, … with all samples."""
+    _write(folder, "signals.json", signals)
+    table = Table("signal", "operating point", "samples", "peak", "crest factor", title="signals")
+    for signal in signals.signals:
+        record = np.tile(arrays[f"period{signal.index}"], signal.periods)
+        samples = {"time": np.arange(len(record)) * signal.sample_time_seconds, "input": record}
+        (folder / f"signal-{signal.index}.csv").write_bytes(arrays_file(samples, "csv"))
+        (folder / f"signal-{signal.index}.npz").write_bytes(arrays_file(samples, "npz"))
+        point = ", ".join(f"{value:g}" for value in signal.operating_point)
+        numbers = (str(signal.samples), f"{signal.peak:.4g}", f"{signal.crest_factor:.3f}")
+        table.add_row(str(signal.index), point, *numbers)
+    _say(folder, table)
+
+
+def _status(outcome: Any) -> str:
+    return str(outcome.status) + (f" ({outcome.advice})" if outcome.advice else "")
+
+
+def _write(folder: Path, name: str, document: BaseModel) -> None:
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / name).write_text(document.model_dump_json(by_alias=True, indent=2) + "\n", encoding="utf-8")
+
+
+def _say(folder: Path, table: Table) -> None:
+    console = Console()
+    console.print(table)
+    console.print(f"written to {folder}")
