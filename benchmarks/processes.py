@@ -1,0 +1,19 @@
+"""Runs of a study spread over processes, one thread of linear algebra in each; the same result for any number."""
+
+import os
+from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
+from typing import TypeVar
+
+import numpy as np
+
+Result = TypeVar("Result")
+
+
+def spread(run: Callable[[np.random.SeedSequence], Result], runs: int, seed: int, workers: int) -> list[Result]:
+    """`run` once for each of the independent seeds that `seed` spawns, in order."""
+    for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
+        os.environ[variable] = "1"
+    with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
+        return list(pool.map(run, np.random.SeedSequence(seed).spawn(runs), chunksize=5))
