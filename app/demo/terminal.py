@@ -1,0 +1,83 @@
+"""What the demonstration writes to the terminal, or to a file or pipe in its place."""
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.table import Table as RichTable
+
+from app.demo.charts import bar
+from app.demo.story import Heard
+from app.report.document import Table
+from app.report.numbers import significant
+
+INDENT = "      "
+BAR_WIDTH = 28
+
+
+class Terminal:
+    """Steps, sentences, tables and bars; a moving progress bar on a terminal, a line a step anywhere else."""
+
+    def __init__(self, console: Console, steps: int) -> None:
+        self._console = console
+        self._steps = steps
+        self._step = 0
+
+    def title(self, text: str) -> None:
+        """What this is."""
+        self._console.print(f"[bold]{text}[/bold]", highlight=False)
+
+    def step(self, text: str) -> None:
+        """The next step of the story."""
+        self._step += 1
+        self._console.print(
+            f"\n[bold cyan][{self._step}/{self._steps}][/bold cyan] [bold]{text}[/bold]", highlight=False
+        )
+
+    def say(self, text: str) -> None:
+        """A sentence."""
+        width = max(self._console.width - len(INDENT), 40)
+        for line in self._console.render_str(text, highlight=False).wrap(self._console, width):
+            self._console.print(INDENT, line, sep="", highlight=False)
+
+    def table(self, table: Table) -> None:
+        """A table without lines."""
+        shown = RichTable(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="dim")
+        for i, column in enumerate(table.columns):
+            shown.add_column(column, justify="left" if i == 0 else "right", overflow="fold")
+        for row in table.rows:
+            shown.add_row(*row)
+        self._indented(shown)
+
+    def bars(self, values: Sequence[tuple[str, float]], unit: str) -> None:
+        """Bars in proportion to the largest value."""
+        top = max(value for _, value in values)
+        shown = RichTable(box=None, pad_edge=False, padding=(0, 2, 0, 0), show_header=False)
+        for justify in ("left", "right", "left"):
+            shown.add_column(justify=justify, no_wrap=justify != "left")
+        for name, value in values:
+            shown.add_row(name, f"{significant(value, 4)} {unit}", f"[cyan]{bar(value / top, BAR_WIDTH)}[/cyan]")
+        self._indented(shown)
+
+    @contextmanager
+    def progress(self, what: str, total: int | None) -> Iterator[Heard]:
+        """Gives the function that is told each item of a step as it begins."""
+        if not self._console.is_terminal:
+            yield lambda item: self.say(f"{what}: {item}")
+            return
+        columns = (TextColumn(INDENT + "{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+        with Progress(*columns, console=self._console, transient=True) as bars:
+            shown = bars.add_task(what, total=total)
+            begun: list[str] = []
+
+            def heard(item: str) -> None:
+                bars.update(shown, description=f"{what}: {item}", completed=len(begun))
+                begun.append(item)
+
+            yield heard
+
+    def _indented(self, shown: RichTable) -> None:
+        grid = RichTable.grid()
+        grid.add_row(INDENT, shown)
+        self._console.print(grid)

@@ -1,0 +1,149 @@
+"""Frequency responses with what is known of them."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import plotly.graph_objects as go
+
+from app.report.axes import Axes, labelled
+from app.report.document import Plot, Table
+from app.report.numbers import estimate, significant
+from app.report.style import NEUTRAL, add_band, colour, dash, new_figure
+from identification.arrays import FloatArray
+from identification.confidence import QUANTILE_95, GainAndPhase, gain_and_phase
+from identification.models import LpvModel
+from identification.signals import FrequencyResponse, OperatingPoint
+
+TABLE_ROWS = 9
+
+
+def bode(
+    model: LpvModel,
+    points: Sequence[OperatingPoint],
+    omega: FloatArray,
+    axes: Axes,
+    measured: Sequence[FrequencyResponse] = (),
+    truth: LpvModel | None = None,
+) -> Plot:
+    """Gain and phase at chosen operating points with 95 % bands, measured points, and the true response if known."""
+    figure = new_figure(("gain", "phase"), heights=(0.58, 0.42), height=600)
+    for i, point in enumerate(points):
+        name = axes.point(point)
+        _add_measured(figure, [response for response in measured if response.operating_point == point], name, i)
+        _add_model(figure, model, point, omega, name, i)
+        if truth is not None:
+            _add_truth(figure, truth, point, omega, show=i == 0)
+    figure.update_xaxes(type="log", dtick=1)
+    figure.update_xaxes(title="frequency (rad/s)", row=2, col=1)
+    figure.update_yaxes(type="log", title=axes.gain_unit, dtick=1, row=1, col=1)
+    figure.update_yaxes(title="degrees", row=2, col=1)
+    figure.update_layout(margin={"t": 70}, legend={"y": 1.07})
+    caption = "Frequency response of the model with 95 % bands; dots are measured" + (
+        ", dotted is the truth." if truth is not None else "."
+    )
+    return Plot(figure, caption, _table(model, points, omega, axes, truth))
+
+
+def gain_accuracy(
+    models: Sequence[tuple[str, LpvModel]],
+    points: Sequence[OperatingPoint],
+    omega: FloatArray,
+    axes: Axes,
+    truth: LpvModel | None = None,
+) -> Plot:
+    """95 % half-widths of the gain in % over frequency, one row an operating point, one curve a model."""
+    titles = [axes.point(point) for point in points]
+    figure = new_figure(titles, height=110 + 150 * len(points))
+    for row, point in enumerate(points, start=1):
+        for i, (name, model) in enumerate(models):
+            width = _half_widths(model, point, omega)
+            add_band(figure, omega.tolist(), (-width).tolist(), width.tolist(), colour(1 - i), row, 0.3, name)
+            if truth is not None:
+                line = {"color": colour(1 - i), "dash": dash(1 - i), "width": 2}
+                error = 100 * (_known(model, point, omega).gain / _known(truth, point, omega).gain - 1)
+                _add_curve(figure, omega, error, row, name, line, row == 1)
+        figure.update_yaxes(title="%", row=row, col=1)
+    figure.update_xaxes(type="log", dtick=1)
+    figure.update_xaxes(title="frequency (rad/s)", row=len(points), col=1)
+    figure.update_layout(margin={"t": 70}, legend={"y": 1 + 40 / (110 + 150 * len(points))})
+    shown = "Error of the gain (curves) and its 95 % band (areas)" if truth is not None else "95 % band of the gain"
+    return Plot(figure, f"{shown}, in % of the gain.", _accuracy_table(models, points, omega, axes))
+
+
+def _add_model(figure: go.Figure, model: LpvModel, point: OperatingPoint, omega: FloatArray, name: str, i: int) -> None:
+    known = _known(model, point, omega)
+    line = {"color": colour(i), "dash": dash(i), "width": 2}
+    low, high = known.gain_band()
+    low_phase, high_phase = map(np.rad2deg, known.phase_band())
+    add_band(figure, omega.tolist(), np.maximum(low, 1e-3 * high).tolist(), high.tolist(), colour(i), 1, 0.3, name)
+    add_band(figure, omega.tolist(), low_phase.tolist(), high_phase.tolist(), colour(i), 2, 0.3, name)
+    _add_curve(figure, omega, known.gain, 1, name, line, True)
+    _add_curve(figure, omega, np.rad2deg(known.phase), 2, name, line, False)
+
+
+def _add_measured(figure: go.Figure, measured: Sequence[FrequencyResponse], name: str, i: int) -> None:
+    marker = {"size": 4, "color": colour(i), "opacity": 0.55}
+    for response in measured:
+        kept = response.frequencies > 0
+        values = (abs(response.response[kept]), np.rad2deg(np.unwrap(np.angle(response.response[kept]))))
+        for row, y in enumerate(values, start=1):
+            x = response.frequencies[kept]
+            figure.add_scatter(
+                x=x, y=y, mode="markers", marker=marker, name=name, legendgroup=name, showlegend=False, row=row, col=1
+            )
+
+
+def _add_truth(figure: go.Figure, truth: LpvModel, point: OperatingPoint, omega: FloatArray, show: bool) -> None:
+    known = _known(truth, point, omega)
+    line = {"color": NEUTRAL, "dash": "dot", "width": 1.6}
+    _add_curve(figure, omega, known.gain, 1, "truth", line, show)
+    _add_curve(figure, omega, np.rad2deg(known.phase), 2, "truth", line, False)
+
+
+def _add_curve(
+    figure: go.Figure, x: FloatArray, y: FloatArray, row: int, name: str, line: dict[str, object], show: bool
+) -> None:
+    common = {"mode": "lines", "name": name, "legendgroup": name, "showlegend": show}
+    figure.add_scatter(x=x, y=y, line=line, row=row, col=1, **common)
+
+
+def _known(model: LpvModel, point: OperatingPoint, omega: FloatArray) -> GainAndPhase:
+    response, covariance = model.frequency_response([point], omega)[0], model.response_covariance([point], omega)[0]
+    return gain_and_phase(response, covariance)
+
+
+def _half_widths(model: LpvModel, point: OperatingPoint, omega: FloatArray) -> FloatArray:
+    """Of the 95 % band of the gain, in % of the gain."""
+    known = _known(model, point, omega)
+    return np.asarray(100 * QUANTILE_95 * known.gain_deviation / known.gain)
+
+
+def _table(
+    model: LpvModel, points: Sequence[OperatingPoint], omega: FloatArray, axes: Axes, truth: LpvModel | None
+) -> Table:
+    chosen = omega[np.linspace(0, len(omega) - 1, TABLE_ROWS).astype(int)]
+    heads = ("operating point", "frequency (rad/s)", labelled("gain ± 95 %", axes.gain_unit), "phase ± 95 % (degrees)")
+    rows = []
+    for point in points:
+        known = _known(model, point, chosen)
+        true_gain = None if truth is None else _known(truth, point, chosen).gain
+        for f, frequency in enumerate(chosen):
+            row = (axes.point(point), significant(frequency), *_with_bands(known, f))
+            rows.append(row if true_gain is None else (*row, significant(true_gain[f], 4)))
+    return Table(heads if truth is None else (*heads, labelled("true gain", axes.gain_unit)), tuple(rows))
+
+
+def _with_bands(known: GainAndPhase, f: int) -> tuple[str, str]:
+    gain = estimate(known.gain[f], QUANTILE_95 * known.gain_deviation[f])
+    return gain, estimate(*np.rad2deg([known.phase[f], QUANTILE_95 * known.phase_deviation[f]]))
+
+
+def _accuracy_table(
+    models: Sequence[tuple[str, LpvModel]], points: Sequence[OperatingPoint], omega: FloatArray, axes: Axes
+) -> Table:
+    rows = []
+    for point in points:
+        widths = [float(_half_widths(model, point, omega).max()) for _, model in models]
+        rows.append((axes.point(point), *(f"{significant(width, 2)} %" for width in widths)))
+    heads = ("operating point", *(name for name, _ in models))
+    return Table(heads, tuple(rows), "Largest 95 % half-width of the gain over frequency, in % of the gain")

@@ -1,0 +1,60 @@
+"""Designed input spectra."""
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+import numpy as np
+import plotly.graph_objects as go
+
+from app.report.axes import Axes, labelled
+from app.report.document import Plot, Table
+from app.report.numbers import significant
+from app.report.style import colour, dash, new_figure
+from oed.design import DesignedExperiment
+from oed.spectra.fir import FirSpectrum
+
+POINTS = 301
+
+
+def spectra(experiments: Sequence[DesignedExperiment], samples: int, sample_time: float, axes: Axes) -> Plot:
+    """The spectrum of each experiment over frequency: a curve where it has a density, lines otherwise."""
+    figure = new_figure(height=360)
+    for i, experiment in enumerate(experiments):
+        name = axes.point(experiment.operating_point)
+        if isinstance(experiment.spectrum, FirSpectrum):
+            _add_density(figure, experiment.spectrum, sample_time, name, i)
+        else:
+            _add_lines(figure, experiment, samples, sample_time, name, i)
+    figure.update_xaxes(title="frequency (rad/s)", range=[0, np.pi / sample_time])
+    figure.update_yaxes(title=labelled("energy density NΦ, or energy of a line", axes.energy_unit), rangemode="tozero")
+    caption = "Spectrum of the input at each operating point; the area under NΦ over ±π, divided by 2π, is the energy."
+    return Plot(figure, caption, _table(experiments, samples, sample_time, axes))
+
+
+def _add_density(figure: go.Figure, spectrum: FirSpectrum, sample_time: float, name: str, i: int) -> None:
+    omega = np.linspace(0, np.pi / sample_time, POINTS)
+    line = {"color": colour(i), "dash": dash(i), "width": 2.2}
+    figure.add_scatter(x=omega, y=spectrum.density(omega), name=name, mode="lines", line=line)
+
+
+def _add_lines(
+    figure: go.Figure, experiment: DesignedExperiment, samples: int, sample_time: float, name: str, i: int
+) -> None:
+    indices, energies = experiment.spectrum.line_energies(samples, sample_time)
+    omega = 2 * np.pi * indices / (samples * sample_time)
+    error = {"type": "data", "symmetric": False, "array": 0 * energies, "arrayminus": energies, "width": 0}
+    figure.add_scatter(x=omega, y=energies, name=name, mode="markers", error_y=error, marker={"color": colour(i)})
+
+
+def _table(experiments: Sequence[DesignedExperiment], samples: int, sample_time: float, axes: Axes) -> Table:
+    """Energy in ten bands of equal width."""
+    edges = np.linspace(0, np.pi / sample_time, 11)
+    bands = [f"{low:.2f} to {high:.2f}" for low, high in pairwise(edges)]
+    columns = []
+    for experiment in experiments:
+        indices, energies = experiment.spectrum.line_energies(samples, sample_time)
+        band = np.minimum(20 * indices // samples, 9)
+        columns.append([significant(value) for value in np.bincount(band, energies, minlength=10)])
+    rows = tuple((name, *values) for name, *values in zip(bands, *columns, strict=True))
+    heads = tuple(axes.point(experiment.operating_point) for experiment in experiments)
+    return Table(("band (rad/s)", *heads), rows, labelled("Energy Σu² by band", axes.energy_unit))
