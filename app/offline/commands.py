@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from functools import wraps
 from pathlib import Path
-from typing import Any, Concatenate, ParamSpec
+from typing import Any
 
 import typer
 from rich.console import Console
@@ -20,17 +20,17 @@ from app.schemas.signals import Signals, SignalsRequest
 from app.services import designs, models, plants, signals
 from identification.errors import MisuseError
 
-Parameters = ParamSpec("Parameters")
+Command = Callable[[Path, Path], None]
 
 
-def _explained(command: Callable[Concatenate[Path, Parameters], None]) -> Callable[Concatenate[Path, Parameters], None]:
+def _explained(command: Command) -> Command:
     """A bad request ends the program with what is wrong and where, instead of a traceback."""
 
     @wraps(command)
-    def run(file: Path, *arguments: Parameters.args, **options: Parameters.kwargs) -> None:
+    def run(file: Path, output: Path) -> None:
         console = Console(stderr=True, highlight=False, markup=False)
         try:
-            command(file, *arguments, **options)
+            command(file, output)
         except ProblemError as error:
             console.print(f"{file}: {error.detail}")
             for problem in error.errors:

@@ -31,7 +31,7 @@ def load(path: Path) -> dict[str, Any]:
     if path.stat().st_size > MAX_FILE_BYTES:
         raise UnprocessableError(f"{path} is larger than {MAX_FILE_BYTES} bytes")
     try:
-        content = yaml.load(path.read_text(encoding="utf-8"), _Loader)  # noqa: S506
+        content = yaml.load(path.read_text(encoding="utf-8"), _Loader)
     except (yaml.YAMLError, UnicodeDecodeError, RecursionError) as error:
         raise UnprocessableError(f"{path} is neither YAML nor JSON: {error}") from None
     if not isinstance(content, dict):

@@ -66,16 +66,27 @@ class FileFields(ExperimentFields):
 
 
 class Understanding(CamelModel):
-    """What was understood of a measurement."""
+    """What was understood of a measurement; null where it does not apply or cannot be known from it."""
 
-    samples: Integer | None = Field(description="samples of a time record")
-    duration_seconds: Double | None = Field(description="length of a time record")
-    period_samples: Integer | None = Field(description="samples in one period, stated or found; null if not periodic")
-    periods: Integer | None = Field(description="whole periods in the record")
-    frequency_count: Integer = Field(description="frequencies that are excited, or at which the response is given")
-    minimum_frequency_rad_per_second: Double | None
-    maximum_frequency_rad_per_second: Double | None
-    noise_level: Double | None = Field(description="standard deviation of the output's noise; null if not determined")
+    samples: Integer | None = Field(default=None, description="samples of a time record")
+    duration_seconds: Double | None = Field(default=None, description="length of a time record")
+    period_samples: Integer | None = Field(default=None, description="samples in one period, stated or found")
+    period_detected: bool = Field(default=False, description="the period was found, not stated")
+    periods: Integer | None = Field(default=None, description="whole periods in the record")
+    transient_periods: Integer | None = Field(default=None, description="leading periods that show a transient")
+    frequency_count: Integer = Field(description="excited lines, or frequencies of the response")
+    minimum_frequency_rad_per_second: Double | None = None
+    maximum_frequency_rad_per_second: Double | None = None
+    excited_frequencies_rad_per_second: Values | None = Field(default=None, description="of a record, at most 1000")
+    frequency_spacing: Literal["linear", "logarithmic", "irregular"] | None = None
+    noise_level: Double | None = Field(default=None, description="standard deviation of the output noise")
+    signal_to_noise_decibel: Double | None = Field(default=None, description="periodic part of the output over noise")
+    relative_deviation: Double | None = Field(default=None, description="median deviation of a response over its size")
+    saturated_fraction: Double | None = Field(default=None, description="share of output samples at its extremes")
+    input_offset: Double | None = Field(default=None, description="mean of the input")
+    output_offset: Double | None = Field(default=None, description="mean of the output")
+    output_trend: Double | None = Field(default=None, description="change of a significant straight line")
+    outliers: Integer | None = Field(default=None, description="output samples far outside the noise")
     warnings: list[str] = Field(description="what may spoil an identification")
 
 
