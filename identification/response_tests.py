@@ -69,28 +69,41 @@ def lack_of_fit(data: FrequencyResponse, errors: ComplexArray, parameters: int) 
     return TestResult("lack of fit", statistic, free, float(stats.chi2.sf(statistic, free)))
 
 
-def neighbour_correlation(data: FrequencyResponse, errors: ComplexArray, jacobian: FloatArray) -> TestResult:
-    """χ² test with one degree of freedom of the correlation between errors (F,) of neighbouring frequencies.
+def neighbour_correlation(
+    data: FrequencyResponse, errors: ComplexArray, jacobian: FloatArray, whitening: FloatArray
+) -> TestResult:
+    """χ² test with one degree of freedom of the correlation between errors of neighbouring frequencies.
 
-        S = Σ Re(e_k* e_{k+1}) = rᵀ L r,   E S = s² tr(L M),   var S = 2 s⁴ tr(L M L M),   M = I − J J⁺
+        S = Σ Re(e_k* e_{k+1}) = eᵀ L e,   E S = s² tr(MᵀLM),   var S = 2 s⁴ tr((MᵀLM)²),   e = M n
 
-    s² is the mean square of the residual; the fit of n parameters (∂r/∂ζ: (2F, n)) is so accounted for.
+    `errors` (F,) and `jacobian` (2F, n) are those minimised; times `whitening` (F,) the errors have alike noise n.
+    M = I − A Bᵀ is what the fit leaves of the noise, s² the mean square of what is left.
     """
     order = np.argsort(data.frequencies)
-    gaussian = gaussian_errors(data, errors)[order]
+    gaussian = gaussian_errors(data, errors * whitening)[order]
     residual = np.concatenate([gaussian.real, gaussian.imag])
-    rows = np.concatenate([order, len(order) + order])
-    span, values, _ = np.linalg.svd(jacobian[rows] / _lengths(jacobian), full_matrices=False)
-    q = span[:, values > 1e-12 * values.max(initial=1e-300)]
-    free = real_count(data) - q.shape[1]
-    between = q.T @ _neighbours(q)
-    mean = -np.trace(between)
-    spread = (len(order) - 1) - 2 * np.sum(_neighbours(q) ** 2) + np.sum(between * between.T)
-    scale = residual @ residual / max(free, 1)
-    if free < 2 or spread <= 1e-9 or scale == 0:
+    span, values, _ = np.linalg.svd(jacobian / _lengths(jacobian), full_matrices=False)
+    span = span[np.concatenate([order, len(order) + order])][:, values > 1e-12 * values.max(initial=1e-300)]
+    whiten = np.tile(whitening[order], 2)[:, None]
+    free, mean, spread = _moments(span * whiten, span / whiten, real_count(data))
+    scale = float(residual @ residual) / max(free, 1e-300)
+    if free < 1.5 or spread <= 1e-9 or scale == 0:
         return TestResult("whiteness over frequency", 0.0, 1.0, 1.0)
     standard = (residual @ _neighbours(residual[:, None])[:, 0] / scale - mean) / np.sqrt(2 * spread)
     return TestResult("whiteness over frequency", float(standard**2), 1.0, float(stats.chi2.sf(standard**2, 1)))
+
+
+def _moments(a: FloatArray, b: FloatArray, count: int) -> tuple[float, float, float]:
+    """tr(MᵀM), tr(MᵀLM) and tr((MᵀLM)²) for M = I − A Bᵀ, A and B (2F, n), without forming it."""
+    moved, n = _neighbours(a), a.shape[1]
+    between = a.T @ moved
+    core = np.block([[np.zeros((n, n)), -np.eye(n)], [-np.eye(n), between]])
+    low_rank = np.concatenate([moved, b], axis=1)
+    free = count - 2 * np.sum(a * b) + np.sum((a.T @ a) * (b.T @ b))
+    mean = -2 * np.sum(moved * b) + np.sum(between * (b.T @ b))
+    inner = core @ (low_rank.T @ low_rank)
+    spread = len(a) / 2 - 1 + 2 * np.sum(core * (low_rank.T @ _neighbours(low_rank))) + np.sum(inner * inner.T)
+    return float(free), float(mean), float(spread)
 
 
 def _lengths(jacobian: FloatArray) -> FloatArray:
