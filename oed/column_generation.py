@@ -129,19 +129,18 @@ class _Bounds:
     def sparse(self, targets: FloatArray, caps: FloatArray, tolerance: float, iterations: int) -> CertifiedSpectra:
         """Without operating points of negligible energy, as long as the gap stays within the tolerance."""
         energies = _energies(self.blocks, self.weights, len(caps))
-        single = [float(np.trace(weight)) for weight in self.weights]
-        least = NEGLIGIBLE * max(single, default=0.0)
-        kept = [
-            block
-            for block, energy in zip(self.blocks, single, strict=True)
-            if energy > least and energies[block.point] > NEGLIGIBLE * energies.max()
-        ]
-        solution = self
-        if 0 < len(kept) < len(self.blocks):
+        single = np.array([np.trace(weight) for weight in self.weights])
+        used = np.array([energies[block.point] for block in self.blocks]) > NEGLIGIBLE * energies.max(initial=0.0)
+        kept = np.flatnonzero(used & (single > NEGLIGIBLE * single.max(initial=0.0)))
+        blocks = [self.blocks[i] for i in kept.tolist()]
+        weights = [_semidefinite(self.weights[i]) for i in kept.tolist()]
+        solution = replace(self, energy=np.inf).with_primal(blocks, weights, targets, caps)
+        if solution.gap > tolerance and 0 < len(kept) < len(self.blocks):
             binding = np.argsort([-np.trace(price) for price in self.prices])[:ACTIVE_TARGETS]
-            weights = [_semidefinite(w) for w in solve_master(kept, targets[np.sort(binding)], caps).weights]
-            fewer = replace(self, energy=np.inf).with_primal(kept, weights, targets, caps)
-            solution = fewer if fewer.gap <= max(tolerance, self.gap) else self
+            weights = [_semidefinite(w) for w in solve_master(blocks, targets[np.sort(binding)], caps).weights]
+            solution = replace(self, energy=np.inf).with_primal(blocks, weights, targets, caps)
+        if solution.gap > max(tolerance, self.gap):
+            solution = self
         return CertifiedSpectra(
             list(solution.blocks),
             list(solution.weights),

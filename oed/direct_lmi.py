@@ -19,7 +19,7 @@ from oed.spectra.fir import FirSpectra
 
 @dataclass(frozen=True, eq=False)
 class DirectDesign:
-    """Energy J, and the coefficients N_p c_{m,i} (M, L + 1) of the spectra; NaN-free only when the outcome is ok."""
+    """Energy J, infinite when infeasible, and the coefficients N_p c_{m,i} (M, L + 1) of the spectra."""
 
     outcome: Outcome
     total_energy: float
@@ -40,26 +40,22 @@ def direct_design(problem: DesignProblem) -> DirectDesign:
     degree, k = problem.family.degree, problem.model.plant_size
     moments = sensitivity_moments(problem.model, problem.points, degree, problem.step)
     targets = np.concatenate([target.matrices(problem.model) for target in problem.targets])[:, :k, :k]
-    scale = np.sqrt(np.max(np.diagonal(targets, axis1=1, axis2=2), axis=0))
-    scale = np.where(scale > 0, scale, 1.0)
-    moments = moments / np.outer(scale, scale)
-    energy = _energy_scale(moments, targets / np.outer(scale, scale))
+    basis = np.linalg.inv(np.linalg.cholesky(moments[:, 0].sum(axis=0))).T
+    moments, targets = basis.T @ moments @ basis, basis.T @ targets @ basis
+    energy = float(np.linalg.eigvalsh(targets)[:, -1].max())
     coefficients = cvxpy.Variable((len(problem.points), degree + 1))
-    information = _information(moments * energy, coefficients)
-    prior = problem.prior[:k, :k] / np.outer(scale, scale)
-    constraints = [information + prior >> target / np.outer(scale, scale) for target in targets]
+    information = _information(moments, coefficients)
+    prior = basis.T @ problem.prior[:k, :k] @ basis / energy
+    constraints = [information + prior >> target / energy for target in targets]
     constraints += [positive for m in range(len(problem.points)) for positive in _positive(coefficients[m], degree)]
     constraints += [coefficients[m, 0] <= cap / energy for m, cap in enumerate(problem.limits) if np.isfinite(cap)]
     task = cvxpy.Problem(cvxpy.Minimize(cvxpy.sum(coefficients[:, 0])), constraints)
     task.solve(solver=cvxpy.CLARABEL)
     if coefficients.value is None:
         return DirectDesign(Outcome("infeasible", f"the solver answers {task.status}"), np.inf, np.zeros((0, 0)))
-    return DirectDesign(Outcome("converged"), float(task.value) * energy, coefficients.value * energy)
-
-
-def _energy_scale(moments: FloatArray, targets: FloatArray) -> float:
-    """An energy of the order of the answer, so that the solver sees numbers near one."""
-    return float(np.trace(targets.sum(axis=0)) / np.trace(moments[:, 0].sum(axis=0)) * len(moments))
+    accurate = task.status == cvxpy.OPTIMAL
+    outcome = Outcome("converged") if accurate else Outcome("not_converged", f"the solver answers {task.status}")
+    return DirectDesign(outcome, float(task.value) * energy, coefficients.value * energy)
 
 
 def _information(moments: FloatArray, coefficients: cvxpy.Variable) -> Any:

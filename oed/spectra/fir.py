@@ -96,9 +96,12 @@ class FirPricing:
         order = np.arange(lags.shape[1])
         values, vectors = np.linalg.eigh(lags[:, abs(order[:, None] - order)])
         worth = values[:, -1]
-        shapes = {block.point: _active(block, weight) for block, weight in zip(blocks, weights, strict=True)}
-        shapes = {point: kept for point, kept in shapes.items() if len(kept)}
-        for m in np.flatnonzero(worth > np.maximum(NEARLY * charges, worth.max() / 2)).tolist():
+        shapes: dict[int, FloatArray] = {}
+        for block, weight in zip(blocks, weights, strict=True):
+            kept = _active(block, weight)
+            if len(kept):
+                shapes[block.point] = _orthonormal(shapes[block.point], kept) if block.point in shapes else kept
+        for m in np.flatnonzero(worth > NEARLY * charges).tolist():
             new = vectors[m][:, values[m] > NEARLY * max(charges[m], worth[m])][:, -MOST_NEW:].T
             shapes[m] = _orthonormal(shapes[m], new) if m in shapes else new
         return Offer(worth, self._blocks(shapes))
@@ -148,5 +151,5 @@ def _active(block: Block, weight: FloatArray) -> FloatArray:
 
 def _orthonormal(kept: FloatArray, new: FloatArray) -> FloatArray:
     """The orthonormal rows of `kept`, and what the rows of `new` have beyond them, made orthonormal."""
-    orthonormal, triangle = np.linalg.qr(np.vstack([kept, new]).T)
-    return np.asarray(orthonormal[:, abs(np.diagonal(triangle)) > 1e-7].T)
+    _, values, rows = np.linalg.svd(new - new @ kept.T @ kept, full_matrices=False)
+    return np.asarray(np.linalg.qr(np.vstack([kept, rows[values > 1e-6]]).T)[0].T)

@@ -1,0 +1,71 @@
+"""Times of the certified solver against the inequality as written, on the example of the paper, in one run.
+
+python -m benchmarks.design_solver [--runs 7] [--degrees 10 20 40] [--output FILE]
+"""
+
+import argparse
+import json
+import statistics
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+from oed.design import design
+from oed.direct_lmi import direct_design
+from oed.problem import DesignProblem
+from oed.spectra.fir import FirSpectra
+from oed.targets.parameter_deviation import ParameterDeviation
+from tests.support.random_models import paper_model
+
+TARGET = ParameterDeviation((0.003, 0.001 / 3, 0.1 / 3, 0.01 / 3, 0.35 / 3, 0.04 / 3))
+
+
+def main() -> None:
+    """Print a row per degree, and write the figures as JSON."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--runs", type=int, default=7)
+    parser.add_argument("--degrees", type=int, nargs="+", default=[10, 20, 40])
+    parser.add_argument("--output", type=Path)
+    arguments = parser.parse_args()
+    rows = [compare(degree, arguments.runs) for degree in arguments.degrees]
+    print("degree  certified J  as written J   gap      certified    as written   ratio (median, min … max)")
+    for row in rows:
+        print(
+            f"{row['degree']:6d} {row['certified']:12.2f} {row['asWritten']:13.2f}   {row['gap']:.0e}"
+            f" {1e3 * row['certifiedSeconds']:9.1f} ms {1e3 * row['asWrittenSeconds']:10.0f} ms"
+            f"   {row['ratio']:.1f} ({row['ratioMinimum']:.1f} … {row['ratioMaximum']:.1f})"
+        )
+    if arguments.output:
+        arguments.output.write_text(json.dumps(rows, indent=2) + "\n")
+
+
+def compare(degree: int, runs: int) -> dict[str, float]:
+    """Both solvers by turns; every time is that of one whole call from the same problem."""
+    problem = DesignProblem(paper_model(), np.arange(0, 8.25, 0.5)[:, None], (TARGET,), FirSpectra(degree), 1000)
+    certified, direct = design(problem), direct_design(problem)
+    pairs = [(timed(lambda: design(problem)), timed(lambda: direct_design(problem))) for _ in range(runs)]
+    ratios = [slow / fast for fast, slow in pairs]
+    return {
+        "degree": degree,
+        "certified": certified.total_energy,
+        "asWritten": direct.total_energy,
+        "gap": certified.gap,
+        "certifiedSeconds": statistics.median(fast for fast, _ in pairs),
+        "asWrittenSeconds": statistics.median(slow for _, slow in pairs),
+        "ratio": statistics.median(ratios),
+        "ratioMinimum": min(ratios),
+        "ratioMaximum": max(ratios),
+    }
+
+
+def timed(call: Callable[[], object]) -> float:
+    """Seconds of one call."""
+    start = time.perf_counter()
+    call()
+    return time.perf_counter() - start
+
+
+if __name__ == "__main__":
+    main()
