@@ -93,10 +93,12 @@ def local_document(estimate: LocalEstimate, data: Measurement | None, experiment
 
 
 def _relative_error(estimate: LocalEstimate, data: Measurement | None) -> float | None:
+    """√(mean |Ĝ − G|²/|Ĝ|²) over the frequencies at which Ĝ is not zero."""
     if not isinstance(data, FrequencyResponse):
         return None
-    error = data.response - estimate.model.structure.plant_response(estimate.model.zeta, data.frequencies)
-    return finite_or_none(float(np.linalg.norm(error) / np.linalg.norm(data.response)))
+    response = estimate.model.structure.plant_response(estimate.model.zeta, data.frequencies)
+    seen = data.response != 0
+    return finite_or_none(float(np.sqrt(np.mean(abs(1 - response[seen] / data.response[seen]) ** 2))))
 
 
 def range_documents(model: LpvModel) -> dict[str, Any]:

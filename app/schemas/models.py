@@ -76,7 +76,9 @@ class LocalModelDocument(CamelModel):
     outcome: OutcomeDocument
     tests: list[TestDocument]
     fit_percent: Double | None = Field(description="100 (1 − ‖y − ŷ‖/‖y − mean(y)‖)")
-    relative_error: Double | None = Field(description="‖Ĝ − G‖/‖Ĝ‖ over the frequencies; null for time records")
+    relative_error: Double | None = Field(
+        description="root mean square of |Ĝ − G|/|Ĝ| over the frequencies; null for time records"
+    )
     stable: bool
     experiment_id: str | None = Field(description="the experiment that it was fitted to")
 
