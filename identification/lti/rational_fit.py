@@ -14,6 +14,7 @@ from identification.models import LocalModel, RationalStructure
 from identification.outcome import Outcome
 from identification.rational_basis import LinearProblem, frequency_scale, rescale
 from identification.rational_start import linear_starts
+from identification.relaxation import relaxation_fit, require_relaxation
 from identification.response_tests import lack_of_fit, neighbour_correlation, real_count, variance_inflation
 from identification.signals import FrequencyResponse
 
@@ -35,7 +36,8 @@ class RationalFit:
 
     `noise_variance` of the model is the factor on the assumed σ_k²: 1 for "variance", else s², the relative or the
     absolute variance of the noise. With `stable` the poles stay in the stable region; a rigid body or an
-    integrator needs `stable=False`.
+    integrator needs `stable=False`. With `relaxation` all poles are real with positive residues, as of resistors and
+    RC arcs in series; an order too low for the data then cannot be bent into something else.
     """
 
     kind: ClassVar[str] = "rational_fit"
@@ -43,6 +45,7 @@ class RationalFit:
 
     weighting: Annotated[Weighting, "what the errors are divided by: stated variance, response or nothing"] = "variance"
     stable: Annotated[bool, "keep all poles in the stable region"] = True
+    relaxation: Annotated[bool, "real poles with positive residues: resistors and RC arcs in series"] = False
     max_iterations: Annotated[int, "most iterations of each search"] = 200
 
     @classmethod
@@ -69,7 +72,8 @@ class RationalFit:
         zeta = factors * solution.x
         model = LocalModel(structure, data.operating_point, zeta, covariance, scale)
         errors = (solution.residual[: len(data)] + 1j * solution.residual[len(data) :]) / np.sqrt(2)
-        tests = [neighbour_correlation(data, errors, solution.jacobian)]
+        whitened = np.ones(len(data)) if data.variance is None else 1 / (weights * np.sqrt(data.variance))
+        tests = [neighbour_correlation(data, errors, solution.jacobian, whitened)]
         if self.weighting == "variance" and free:
             tests.insert(0, lack_of_fit(data, errors, structure.size))
         outcome = _with_advice(solution.outcome, scaled, solution.x, self.stable, free)
@@ -77,6 +81,8 @@ class RationalFit:
 
     def _check(self, structure: RationalStructure, data: FrequencyResponse) -> None:
         require_same_sampling(structure, data)
+        if self.relaxation:
+            require_relaxation(structure)
         if structure.n_noise:
             raise MisuseError(
                 "a frequency response says nothing about the noise model; set n_c and n_d to zero", "structure"
@@ -108,6 +114,8 @@ class RationalFit:
         return np.asarray(1 / np.sqrt(data.variance))
 
     def _search(self, scaled: RationalStructure, data: FrequencyResponse, weights: FloatArray) -> LeastSquaresSolution:
+        if self.relaxation:
+            return relaxation_fit(scaled, data, weights, self.max_iterations)
         if scaled.delay:
             kept = np.unique(np.linspace(0, len(data) - 1, min(len(data), LINES_FOR_DELAY)).round().astype(np.int64))
             few = replace(data, frequencies=data.frequencies[kept], response=data.response[kept], variance=None)
