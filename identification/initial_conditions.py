@@ -4,9 +4,9 @@ from typing import Literal
 
 import numpy as np
 from scipy.linalg import qr
-from scipy.signal import lfilter
 
 from identification.arrays import FloatArray
+from identification.filtering import lfilter
 from identification.likelihood import delayed, prediction_errors
 from identification.models import RationalStructure
 from identification.signals import TimeRecord

@@ -1,10 +1,10 @@
 """The residuals whose sum of squares the maximum-likelihood estimators minimise, with their exact derivatives."""
 
 import numpy as np
-from scipy.signal import lfilter
 
 from identification.arrays import FloatArray
 from identification.errors import MisuseError
+from identification.filtering import lfilter
 from identification.models import RationalStructure
 from identification.signals import FrequencyResponse, Measurement, TimeRecord
 

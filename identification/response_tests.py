@@ -1,7 +1,7 @@
 """What the residuals of a model of a frequency response say: noise, lack of fit, whiteness over frequency."""
 
 import numpy as np
-from scipy import stats
+from scipy.special import chdtrc, chdtri, fdtrc
 
 from identification.arrays import BoolArray, ComplexArray, FloatArray
 from identification.errors import MisuseError
@@ -58,7 +58,7 @@ def gaussian_errors(data: FrequencyResponse, errors: ComplexArray) -> ComplexArr
     power = abs(errors) ** 2
     gaussian = d * np.log1p(power / d)
     real = real_lines(data.frequencies, data.sample_time)
-    gaussian[real] = stats.chi2.isf(stats.f.sf(2 * power[real], 1, d), 1) / 2
+    gaussian[real] = chdtri(1, fdtrc(1, d, 2 * power[real])) / 2
     return np.asarray(errors * np.sqrt(np.divide(gaussian, power, out=np.ones_like(power), where=power > 0)))
 
 
@@ -66,7 +66,7 @@ def lack_of_fit(data: FrequencyResponse, errors: ComplexArray, parameters: int) 
     """χ² test of errors (F,) whitened with a stated variance: 2 Σ|ẽ_k|² ~ χ² with as many real numbers − n."""
     free = real_count(data) - parameters
     statistic = 2 * float(np.sum(abs(gaussian_errors(data, errors)) ** 2))
-    return TestResult("lack of fit", statistic, free, float(stats.chi2.sf(statistic, free)))
+    return TestResult("lack of fit", statistic, free, float(chdtrc(free, statistic)))
 
 
 def neighbour_correlation(
@@ -90,7 +90,7 @@ def neighbour_correlation(
     if free < 1.5 or spread <= 1e-9 or scale == 0:
         return TestResult("whiteness over frequency", 0.0, 1.0, 1.0)
     standard = (residual @ _neighbours(residual[:, None])[:, 0] / scale - mean) / np.sqrt(2 * spread)
-    return TestResult("whiteness over frequency", float(standard**2), 1.0, float(stats.chi2.sf(standard**2, 1)))
+    return TestResult("whiteness over frequency", float(standard**2), 1.0, float(chdtrc(1, standard**2)))
 
 
 def _moments(a: FloatArray, b: FloatArray, count: int) -> tuple[float, float, float]:

@@ -1,10 +1,10 @@
 """Simulation of a model at a constant operating point."""
 
 import numpy as np
-from scipy.signal import lfilter
 
 from identification.arrays import FloatArray
 from identification.errors import MisuseError, ShapeError
+from identification.filtering import lfilter
 from identification.models import RationalStructure
 
 

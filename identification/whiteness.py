@@ -2,10 +2,10 @@
 
 import numpy as np
 from scipy.linalg import qr
-from scipy.signal import lfilter
 from scipy.special import chdtrc
 
 from identification.arrays import FloatArray
+from identification.filtering import lfilter
 from identification.likelihood import delayed
 from identification.models import RationalStructure
 from identification.outcome import TestResult

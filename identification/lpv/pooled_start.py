@@ -4,9 +4,9 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 from scipy.linalg import qr
-from scipy.signal import lfilter
 
 from identification.arrays import ComplexArray, FloatArray
+from identification.filtering import lfilter
 from identification.likelihood import delayed
 from identification.lti.box_jenkins_start import autoregression, disturbance, high_order_model, reflected
 from identification.models import RationalStructure

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import qr
-from scipy.signal import lfilter
 
 from identification.arrays import FloatArray
+from identification.filtering import lfilter
 from identification.likelihood import delayed
 from identification.models import RationalStructure, roots
 from identification.signals import TimeRecord
