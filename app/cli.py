@@ -45,6 +45,17 @@ def identify(file: RequestFile, output: Output = None) -> None:
     run(file, output or file.with_name(f"{file.stem}-identified"))
 
 
+@application.command()
+def demo(
+    output: Annotated[Path, typer.Option("--output", "-o", help="folder for the report")] = Path("lpv-oed-demo"),
+    seed: Annotated[int, typer.Option(min=0, help="of the noise; the same seed gives the same report")] = 1,
+) -> None:
+    """Walk the whole loop on a simulated plant; leaves an HTML report."""
+    from app.demo.command import demo as run
+
+    run(output, seed)
+
+
 def main() -> None:
     """The program lpv-oed."""
     application()

@@ -10,9 +10,9 @@ from app.report.figures.accuracy import accuracy
 from app.report.figures.bode import bode, gain_accuracy
 from app.report.figures.convergence import certificate_table, convergence
 from app.report.figures.energies import energy_comparison, energy_per_point
-from app.report.figures.poles import poles
+from app.report.figures.poles import pole_accuracy, poles
 from app.report.figures.residuals import residual_correlation, test_table
-from app.report.figures.signals import signals
+from app.report.figures.signals import signal_table, signals
 from app.report.figures.spectra import spectra
 from app.report.numbers import percent, significant
 
@@ -61,7 +61,7 @@ def _plant() -> Section:
         "Model: y = B/A u + 1/D e with A = 1 + a1 q⁻¹, B = b0 q⁻¹, D = 1 + d1 q⁻¹, every coefficient affine in v:"
         " a1(v) = a1[0] + a1[1] v, and so on. These six numbers are to be known with the standard deviations σ below,"
         " all directions of the parameter space included. The design aims"
-        f" {percent(task.MARGIN)} better, for it rests on an estimate.",
+        f" {percent(task.MARGIN, 1)} better, for it rests on an estimate.",
     )
     return Section("What is asked", text, (asked_table(),))
 
@@ -107,7 +107,11 @@ def _signals(story: Story) -> Section:
         " optimised for a low crest factor (peak over root mean square). Where the amplitude limit asks for it, the"
         " same energy is spread over more periods.",
     )
-    return Section("The signals", text, (signals(story.second.points, story.signals, task.AXES),))
+    blocks = (
+        signal_table(story.second.points, story.signals, task.AXES),
+        signals(story.second.points, story.signals, task.AXES),
+    )
+    return Section("The signals", text, blocks)
 
 
 def _model(story: Story) -> Section:
@@ -122,6 +126,7 @@ def _model(story: Story) -> Section:
         bode(model, points, OMEGA, task.AXES, story.responses, truth),
         gain_accuracy(models, points, OMEGA, task.AXES, truth),
         poles(model, FINE, task.AXES, local, truth),
+        pole_accuracy(models, FINE, task.AXES, truth),
     )
     return Section("The model", text, blocks)
 
@@ -141,6 +146,6 @@ def _residuals(story: Story) -> Section:
         "If the model is right, what it cannot predict is white noise, independent of the past input, and one"
         " dependence on the velocity fits all experiments.",
     )
-    tests = test_table([("the model" if "p =" not in t.name else "a record", t) for t in story.final.tests])
+    tests = test_table(story.final.tests)
     plot = residual_correlation(story.second.points, story.prediction_errors, task.AXES)
     return Section("What is left over", text, (plot, tests))

@@ -20,7 +20,7 @@ def asked_table() -> Table:
     """Parameters and the standard deviations asked for."""
     parts = zip(task.PARAMETERS, MEANINGS, task.ASKED, UNITS, strict=True)
     rows = tuple((name, meaning, f"{significant(sigma)} {unit}".strip()) for name, meaning, sigma, unit in parts)
-    return Table(("parameter", "what it is", "σ asked"), rows)
+    return Table(("parameter", "what it is", "σ asked"), rows, text_columns=2)
 
 
 def estimate_table(found: LpvEstimate) -> Table:
@@ -28,4 +28,4 @@ def estimate_table(found: LpvEstimate) -> Table:
     deviations = found.model.covariance.diagonal() ** 0.5
     parts = zip(task.PARAMETERS, found.model.theta, deviations, task.ASKED, strict=True)
     rows = tuple((name, estimate(value, sigma), percent(sigma / asked)) for name, value, sigma, asked in parts)
-    return Table(("parameter", "estimate ± σ", "σ in relation to what is asked"), rows)
+    return Table(("parameter", "estimate ± σ", "of σ asked"), rows)

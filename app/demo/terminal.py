@@ -45,7 +45,7 @@ class Terminal:
         """A table without lines."""
         shown = RichTable(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="dim")
         for i, column in enumerate(table.columns):
-            shown.add_column(column, justify="left" if i == 0 else "right", overflow="fold")
+            shown.add_column(column, justify="left" if i < table.text_columns else "right", overflow="fold")
         for row in table.rows:
             shown.add_row(*row)
         self._indented(shown)

@@ -1,27 +1,55 @@
-"""Standard deviations of poles, to first order in the covariance of the model."""
+"""Standard deviations of poles, to first order in the covariance of the coefficients."""
+
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from identification.arrays import ComplexArray, FloatArray
-from identification.models import LpvModel
+from identification.models import LocalModel, LpvModel, RationalStructure
 
 
-def poles_with_deviations(model: LpvModel, points: ArrayLike) -> tuple[ComplexArray, FloatArray, FloatArray]:
-    """Poles (M, n_a) in the order of their real parts, and the deviations of real and imaginary parts.
+@dataclass(frozen=True, eq=False)
+class UncertainPoles:
+    """Poles (M, n_a) in the order of their real parts, with the deviations of real and imaginary parts."""
 
-    ∂x/∂a_i = −x^{n_a − i} / A′(x) at a zero x of A
-    """
-    structure = model.structure
+    values: ComplexArray
+    real_deviation: FloatArray
+    imaginary_deviation: FloatArray
+
+    def part(self, which: int) -> tuple[FloatArray, FloatArray]:
+        """Real (0) or imaginary (1) parts and their deviations."""
+        if which == 0:
+            return self.values.real, self.real_deviation
+        return self.values.imag, self.imaginary_deviation
+
+
+def poles_of(model: LpvModel, points: ArrayLike) -> UncertainPoles:
+    """Along operating points (M, s)."""
+    transfer = model.dependence.matrix(points)
+    values, sensitivity = _sensitivity(model.structure, transfer @ model.theta)
+    return _uncertain(values, sensitivity @ transfer[:, : model.structure.n_a], model.covariance)
+
+
+def local_poles(model: LocalModel) -> UncertainPoles:
+    """Of one local model, M = 1."""
+    values, sensitivity = _sensitivity(model.structure, model.zeta[None])
+    order = model.structure.n_a
+    return _uncertain(values, sensitivity, model.covariance[:order, :order])
+
+
+def _sensitivity(structure: RationalStructure, zeta: FloatArray) -> tuple[ComplexArray, ComplexArray]:
+    """Zeros x (M, n_a) of A and ∂x/∂a_i = −x^{n_a − i} / A′(x) as (M, n_a, n_a), both in the unit of poles."""
     scale = 1.0 if structure.is_discrete else structure.frequency_scale
-    zeros = np.sort_complex(model.poles(points) / scale)
-    order = zeros.shape[-1]
+    zeros = np.sort_complex(structure.poles(zeta)) / scale
+    order = structure.n_a
     differences = zeros[..., :, None] - zeros[..., None, :] + np.eye(order)
-    slope = -(zeros[..., None] ** np.arange(order - 1, -1, -1)) / differences.prod(axis=-1)[..., None]
-    transfer = model.dependence.matrix(points)[:, :order]
-    sensitivity = scale * np.einsum("mxa,mak->mxk", slope, transfer)
-    real, imaginary = (
-        np.sqrt(np.einsum("mxi,ij,mxj->mx", part, model.covariance, part))
-        for part in (sensitivity.real, sensitivity.imag)
+    powers = zeros[..., None] ** np.arange(order - 1, -1, -1)
+    return np.asarray(scale * zeros), np.asarray(-scale * powers / differences.prod(axis=-1)[..., None])
+
+
+def _uncertain(values: ComplexArray, sensitivity: ComplexArray, covariance: FloatArray) -> UncertainPoles:
+    deviations = (
+        np.sqrt(np.einsum("mxi,ij,mxj->mx", part, covariance, part)) for part in (sensitivity.real, sensitivity.imag)
     )
-    return scale * zeros, real, imaginary
+    return UncertainPoles(values, *deviations)

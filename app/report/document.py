@@ -7,11 +7,12 @@ import plotly.graph_objects as go
 
 @dataclass(frozen=True)
 class Table:
-    """Rows of text under column heads; the first column names the row."""
+    """Rows of text under column heads; the first column names the row, further `text_columns` are text, not numbers."""
 
     columns: tuple[str, ...]
     rows: tuple[tuple[str, ...], ...]
     caption: str = ""
+    text_columns: int = 1
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,9 +1,12 @@
 """The look of all plots: colours that colour-blind readers can tell apart, text and grid left to the page's style."""
 
 from collections.abc import Sequence
+from textwrap import wrap
 
 import plotly.graph_objects as go
 from plotly.subplots import make_subplots
+
+from identification.arrays import FloatArray
 
 # Okabe and Ito's palette, without those that vanish on a white or a dark page.
 PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
@@ -28,6 +31,11 @@ def faded(hexadecimal: str, opacity: float = 0.25) -> str:
     return f"rgba({red},{green},{blue},{opacity})"
 
 
+def wrapped(text: str, width: int = 20) -> str:
+    """A label in lines of at most so many characters."""
+    return "<br>".join(wrap(text, width))
+
+
 def new_figure(titles: Sequence[str] = ("",), heights: Sequence[float] | None = None, height: int = 340) -> go.Figure:
     """An empty figure with one row a title and a common horizontal axis, made for narrow and wide pages."""
     figure = make_subplots(
@@ -50,7 +58,14 @@ def new_figure(titles: Sequence[str] = ("",), heights: Sequence[float] | None = 
         dragmode=False,
         barmode="group",
     )
-    axis = {"automargin": True, "showline": True, "linecolor": NEUTRAL, "gridcolor": faded(NEUTRAL, 0.3)}
+    axis: dict[str, object] = {
+        "automargin": True,
+        "showline": True,
+        "linecolor": NEUTRAL,
+        "gridcolor": faded(NEUTRAL, 0.3),
+    }
+    axis["title"] = {"font": {"size": 13}}
+    figure.update_annotations(font_size=13)
     figure.update_xaxes(**axis, zeroline=False, ticks="outside", tickcolor=NEUTRAL)
     figure.update_yaxes(**axis, zeroline=False)
     return figure
@@ -58,17 +73,24 @@ def new_figure(titles: Sequence[str] = ("",), heights: Sequence[float] | None = 
 
 def add_band(
     figure: go.Figure,
-    x: Sequence[float],
-    lower: Sequence[float],
-    upper: Sequence[float],
+    x: FloatArray,
+    lower: FloatArray,
+    upper: FloatArray,
     hexadecimal: str,
     row: int,
-    opacity: float = 0.25,
+    opacity: float = 0.3,
     group: str | None = None,
+    show: bool = False,
 ) -> None:
-    """The area between two curves, with the visibility of its legend group."""
-    common = {"x": x, "mode": "lines", "line": {"width": 0}, "hoverinfo": "skip", "showlegend": False}
-    figure.add_scatter(**common, y=lower, legendgroup=group, row=row, col=1)
-    figure.add_scatter(
-        **common, y=upper, legendgroup=group, fill="tonexty", fillcolor=faded(hexadecimal, opacity), row=row, col=1
-    )
+    """The area between two curves, with the visibility of its legend group, named after it if it is to `show`."""
+    common = {"x": x, "mode": "lines", "line": {"width": 0}, "hoverinfo": "skip", "legendgroup": group}
+    figure.add_scatter(**common, y=lower, showlegend=False, row=row, col=1)
+    area = {"fill": "tonexty", "fillcolor": faded(hexadecimal, opacity), "name": group, "showlegend": show}
+    figure.add_scatter(**common, y=upper, **area, row=row, col=1)
+
+
+def add_truth(figure: go.Figure, x: FloatArray, y: FloatArray, row: int, show: bool) -> None:
+    """A broad pale line, to be drawn before what is held against it."""
+    line = {"color": faded(NEUTRAL, 0.45), "width": 7}
+    common = {"mode": "lines", "name": "truth", "legendgroup": "truth", "hoverinfo": "skip"}
+    figure.add_scatter(x=x, y=y, line=line, showlegend=show, row=row, col=1, **common)

@@ -39,7 +39,7 @@ def accuracy(figures: Accuracy) -> Plot:
         share = 100 * abs(figures.error) / figures.asked
         figure.add_scatter(x=figures.names, y=share, mode="markers", marker=marker, name="actual error |θ̂ − θ|")
     figure.add_hline(y=100, line={"color": NEUTRAL, "dash": "dash"})
-    figure.update_yaxes(title="% of the standard deviation asked for", rangemode="tozero")
+    figure.update_yaxes(title="% of σ asked", rangemode="tozero")
     caption = "Standard deviation of each parameter, in % of what was asked for (dashed line)."
     return Plot(figure, caption, accuracy_table(figures))
 

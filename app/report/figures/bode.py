@@ -8,13 +8,14 @@ import plotly.graph_objects as go
 from app.report.axes import Axes, labelled
 from app.report.document import Plot, Table
 from app.report.numbers import estimate, significant
-from app.report.style import NEUTRAL, add_band, colour, dash, new_figure
+from app.report.style import NEUTRAL, add_band, add_truth, colour, dash, new_figure
 from identification.arrays import FloatArray
 from identification.confidence import QUANTILE_95, GainAndPhase, gain_and_phase
 from identification.models import LpvModel
 from identification.signals import FrequencyResponse, OperatingPoint
 
 TABLE_ROWS = 9
+WORST_SHOWN = 0.3
 
 
 def bode(
@@ -28,18 +29,19 @@ def bode(
     """Gain and phase at chosen operating points with 95 % bands, measured points, and the true response if known."""
     figure = new_figure(("gain", "phase"), heights=(0.58, 0.42), height=600)
     for i, point in enumerate(points):
-        name = axes.point(point)
-        _add_measured(figure, [response for response in measured if response.operating_point == point], name, i)
-        _add_model(figure, model, point, omega, name, i)
         if truth is not None:
             _add_truth(figure, truth, point, omega, show=i == 0)
+        name = axes.point(point)
+        own = [response for response in measured if response.operating_point == point]
+        _add_measured(figure, model, own, name, i)
+        _add_model(figure, model, point, omega, name, i)
     figure.update_xaxes(type="log", dtick=1)
     figure.update_xaxes(title="frequency (rad/s)", row=2, col=1)
     figure.update_yaxes(type="log", title=axes.gain_unit, dtick=1, row=1, col=1)
     figure.update_yaxes(title="degrees", row=2, col=1)
     figure.update_layout(margin={"t": 70}, legend={"y": 1.07})
-    caption = "Frequency response of the model with 95 % bands; dots are measured" + (
-        ", dotted is the truth." if truth is not None else "."
+    caption = "Frequency response of the model with 95 % bands; dots are measured to better than 30 %" + (
+        ", the broad line is the truth." if truth is not None else "."
     )
     return Plot(figure, caption, _table(model, points, omega, axes, truth))
 
@@ -51,21 +53,21 @@ def gain_accuracy(
     axes: Axes,
     truth: LpvModel | None = None,
 ) -> Plot:
-    """95 % half-widths of the gain in % over frequency, one row an operating point, one curve a model."""
-    titles = [axes.point(point) for point in points]
-    figure = new_figure(titles, height=110 + 150 * len(points))
+    """95 % bands of the gain in % over frequency, one row an operating point, later models being the better ones."""
+    height = 110 + 150 * len(points)
+    figure = new_figure([axes.point(point) for point in points], height=height)
+    hues = (NEUTRAL, *(colour(i) for i in range(len(models))))
     for row, point in enumerate(points, start=1):
-        for i, (name, model) in enumerate(models):
+        for (name, model), hue in zip(models, hues, strict=False):
             width = _half_widths(model, point, omega)
-            add_band(figure, omega.tolist(), (-width).tolist(), width.tolist(), colour(1 - i), row, 0.3, name)
+            add_band(figure, omega, -width, width, hue, row, group=name, show=truth is None and row == 1)
             if truth is not None:
-                line = {"color": colour(1 - i), "dash": dash(1 - i), "width": 2}
                 error = 100 * (_known(model, point, omega).gain / _known(truth, point, omega).gain - 1)
-                _add_curve(figure, omega, error, row, name, line, row == 1)
+                _add_curve(figure, omega, error, row, name, {"color": hue, "width": 2}, row == 1)
         figure.update_yaxes(title="%", row=row, col=1)
     figure.update_xaxes(type="log", dtick=1)
     figure.update_xaxes(title="frequency (rad/s)", row=len(points), col=1)
-    figure.update_layout(margin={"t": 70}, legend={"y": 1 + 40 / (110 + 150 * len(points))})
+    figure.update_layout(margin={"t": 70}, legend={"y": 1 + 40 / height})
     shown = "Error of the gain (curves) and its 95 % band (areas)" if truth is not None else "95 % band of the gain"
     return Plot(figure, f"{shown}, in % of the gain.", _accuracy_table(models, points, omega, axes))
 
@@ -75,29 +77,30 @@ def _add_model(figure: go.Figure, model: LpvModel, point: OperatingPoint, omega:
     line = {"color": colour(i), "dash": dash(i), "width": 2}
     low, high = known.gain_band()
     low_phase, high_phase = map(np.rad2deg, known.phase_band())
-    add_band(figure, omega.tolist(), np.maximum(low, 1e-3 * high).tolist(), high.tolist(), colour(i), 1, 0.3, name)
-    add_band(figure, omega.tolist(), low_phase.tolist(), high_phase.tolist(), colour(i), 2, 0.3, name)
+    add_band(figure, omega, np.maximum(low, 1e-3 * high), high, colour(i), 1, group=name)
+    add_band(figure, omega, low_phase, high_phase, colour(i), 2, group=name)
     _add_curve(figure, omega, known.gain, 1, name, line, True)
     _add_curve(figure, omega, np.rad2deg(known.phase), 2, name, line, False)
 
 
-def _add_measured(figure: go.Figure, measured: Sequence[FrequencyResponse], name: str, i: int) -> None:
-    marker = {"size": 4, "color": colour(i), "opacity": 0.55}
+def _add_measured(figure: go.Figure, model: LpvModel, measured: Sequence[FrequencyResponse], name: str, i: int) -> None:
+    """Only points with a known noise of less than 30 %; the rest is noise and would hide the others."""
+    marker = {"size": 5, "color": colour(i), "opacity": 0.6}
     for response in measured:
-        kept = response.frequencies > 0
-        values = (abs(response.response[kept]), np.rad2deg(np.unwrap(np.angle(response.response[kept]))))
-        for row, y in enumerate(values, start=1):
-            x = response.frequencies[kept]
-            figure.add_scatter(
-                x=x, y=y, mode="markers", marker=marker, name=name, legendgroup=name, showlegend=False, row=row, col=1
-            )
+        omega, values = response.frequencies, response.response
+        noise = np.zeros(len(omega)) if response.variance is None else np.sqrt(response.variance)
+        kept = (omega > 0) & (noise < WORST_SHOWN * abs(values))
+        near = model.frequency_response([response.operating_point], omega)[0]
+        phase = _known(model, response.operating_point, omega).phase + np.angle(values / near)
+        for row, y in enumerate((abs(values), np.rad2deg(phase)), start=1):
+            common = {"mode": "markers", "name": name, "legendgroup": name, "showlegend": False}
+            figure.add_scatter(x=omega[kept], y=y[kept], marker=marker, row=row, col=1, **common)
 
 
 def _add_truth(figure: go.Figure, truth: LpvModel, point: OperatingPoint, omega: FloatArray, show: bool) -> None:
     known = _known(truth, point, omega)
-    line = {"color": NEUTRAL, "dash": "dot", "width": 1.6}
-    _add_curve(figure, omega, known.gain, 1, "truth", line, show)
-    _add_curve(figure, omega, np.rad2deg(known.phase), 2, "truth", line, False)
+    add_truth(figure, omega, known.gain, 1, show)
+    add_truth(figure, omega, np.rad2deg(known.phase), 2, False)
 
 
 def _add_curve(

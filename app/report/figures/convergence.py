@@ -18,7 +18,7 @@ def convergence(history: Sequence[tuple[int, float]], tolerance: float) -> Plot:
     line = {"color": colour(0), "width": 2}
     figure.add_scatter(x=rounds, y=gaps, mode="lines+markers", line=line, showlegend=False)
     figure.add_hline(y=tolerance, line={"color": NEUTRAL, "dash": "dash"})
-    figure.update_xaxes(title="iteration", tickformat="d")
+    figure.update_xaxes(title="iteration", dtick=max(1, len(rounds) // 10))
     low, high = np.log10(min([*gaps, tolerance])), np.log10(max([*gaps, tolerance]))
     figure.update_yaxes(title="relative gap", type="log", range=[np.floor(low), np.ceil(high) + 0.1], dtick=1)
     figure.update_yaxes(exponentformat="power")
@@ -38,8 +38,8 @@ def certificate_table(design: Design, axes: Axes, targets: Sequence[str]) -> Tab
         ("samples needed for the noise model", significant(design.required_samples, 3)),
     ]
     for binding in design.binding:
-        if binding.what == "target":
+        if binding.what == "target" and len(targets) > 1:
             rows.append((f"share of the energy due to: {targets[binding.index]}", percent(binding.multiplier)))
-        else:
+        if binding.what == "cap":
             rows.append((f"energy saved per unit of cap at point {binding.index + 1}", significant(binding.multiplier)))
     return Table(("certificate", "value"), tuple(rows))

@@ -7,7 +7,7 @@ import numpy as np
 from app.report.axes import Axes, labelled
 from app.report.document import Plot, Table
 from app.report.numbers import percent, significant
-from app.report.style import NEUTRAL, colour, new_figure
+from app.report.style import NEUTRAL, colour, new_figure, wrapped
 from identification.arrays import FloatArray
 from oed.design import DesignedExperiment
 
@@ -26,6 +26,8 @@ def energy_per_point(experiments: Sequence[DesignedExperiment], offered: FloatAr
         marker={"color": colour(0)},
         text=[significant(energy) for energy in energies],
         textposition="outside",
+        constraintext="none",
+        textangle=0,
         cliponaxis=False,
     )
     figure.add_scatter(
@@ -56,16 +58,18 @@ def energy_comparison(alternatives: Sequence[tuple[str, float]], axes: Axes) -> 
     figure = new_figure(height=110 + 48 * len(names))
     figure.add_bar(
         x=energies,
-        y=names,
+        y=[wrapped(name) for name in names],
         orientation="h",
         marker={"color": [colour(0)] + [NEUTRAL] * (len(names) - 1)},
         text=[significant(energy, 4) for energy in energies],
-        textposition="auto",
-        insidetextfont={"color": "#ffffff"},
+        textposition="outside",
+        constraintext="none",
+        textangle=0,
+        cliponaxis=False,
     )
     figure.update_layout(margin={"t": 8})
     figure.update_yaxes(autorange="reversed", showgrid=False)
-    figure.update_xaxes(title=labelled("energy Σu²", axes.energy_unit), rangemode="tozero")
+    figure.update_xaxes(title=labelled("energy Σu²", axes.energy_unit), range=[0, 1.2 * max(energies)], nticks=6)
     rows = tuple((name, significant(e, 4), percent(e / energies[0])) for name, e in alternatives)
     table = Table(("way", labelled("energy Σu²", axes.energy_unit), "relative to the first"), rows)
     return Plot(figure, "Input energy that different ways need for the same accuracy.", table)

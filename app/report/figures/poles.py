@@ -6,16 +6,17 @@ import numpy as np
 import plotly.graph_objects as go
 
 from app.report.axes import Axes
-from app.report.deviations import poles_with_deviations
+from app.report.deviations import local_poles, poles_of
 from app.report.document import Plot, Table
 from app.report.numbers import estimate, significant
-from app.report.style import NEUTRAL, add_band, colour, new_figure
-from identification.arrays import ComplexArray, FloatArray
+from app.report.style import NEUTRAL, add_band, add_truth, colour, new_figure
+from identification.arrays import FloatArray
 from identification.confidence import QUANTILE_95
 from identification.estimates import LocalEstimate
 from identification.models import LpvModel
 
 TABLE_ROWS = 9
+PARTS = ("real part", "imaginary part")
 
 
 def poles(
@@ -26,69 +27,113 @@ def poles(
     truth: LpvModel | None = None,
 ) -> Plot:
     """Real and imaginary parts of the poles along operating points (M, s), with 95 % bands and local estimates."""
-    values, *_ = poles_with_deviations(model, points)
-    parts = ("real part", "imaginary part") if np.any(abs(values.imag) > 0) else ("real part",)
+    parts = PARTS if np.any(model.poles(points).imag != 0) else PARTS[:1]
     unit = "" if model.structure.is_discrete else " (rad/s)"
-    figure = new_figure(parts if len(parts) > 1 else ("",), height=60 + 300 * len(parts))
+    figure = new_figure(parts if len(parts) > 1 else ("",), height=80 + 280 * len(parts))
     for row, part in enumerate(parts, start=1):
+        if truth is not None:
+            values = poles_of(truth, points).part(row - 1)[0]
+            for i, curve in enumerate(values.T):
+                add_truth(figure, points[:, 0], curve, row, show=row == 1 and i == 0)
         _add_model(figure, model, points, row)
         _add_local(figure, local, row)
-        if truth is not None:
-            _add_truth(figure, truth, points, row)
-        figure.update_yaxes(title=f"pole, {part}{unit}", row=row, col=1)
+        figure.update_yaxes(title=f"{part}{unit}", row=row, col=1)
     figure.update_xaxes(title=axes.scheduling, row=len(parts), col=1)
-    caption = f"Poles of the model{' (z-plane)' if model.structure.is_discrete else ''} with their 95 % bands."
+    where = " in the z-plane" if model.structure.is_discrete else ""
+    caption = f"Poles of the model{where} with their 95 % bands; circles, local estimates with their 95 % intervals."
     return Plot(figure, caption, _table(model, points, axes, truth))
 
 
-def _part(values: ComplexArray, row: int) -> FloatArray:
-    return np.asarray(values.real if row == 1 else values.imag)
+def pole_accuracy(
+    models: Sequence[tuple[str, LpvModel]], points: FloatArray, axes: Axes, truth: LpvModel | None = None
+) -> Plot:
+    """95 % bands of the real parts of the poles of models, later ones better; errors where the truth is known."""
+    count = models[0][1].structure.n_a
+    figure = new_figure([f"pole {i + 1}" for i in range(count)] if count > 1 else ("",), height=110 + 190 * count)
+    hues = (NEUTRAL, *(colour(i) for i in range(len(models))))
+    for (name, model), hue in zip(models, hues, strict=False):
+        found = poles_of(model, points)
+        for i in range(count):
+            half, x = QUANTILE_95 * found.real_deviation[:, i], points[:, 0]
+            add_band(figure, x, -half, half, hue, i + 1, 0.3, name, show=truth is None and i == 0)
+            if truth is not None:
+                error = found.values.real[:, i] - poles_of(truth, points).values.real[:, i]
+                line = {"color": hue, "width": 2}
+                figure.add_scatter(
+                    x=x,
+                    y=error,
+                    mode="lines",
+                    line=line,
+                    name=name,
+                    legendgroup=name,
+                    showlegend=i == 0,
+                    row=i + 1,
+                    col=1,
+                )
+    figure.update_yaxes(title="real part", exponentformat="power")
+    figure.update_xaxes(title=axes.scheduling, row=count, col=1)
+    shown = "Error of the poles (curves) and their 95 % bands (areas)" if truth else "95 % bands of the poles"
+    return Plot(figure, f"{shown} over the operating points.", _accuracy_table(models, points, axes))
 
 
 def _add_model(figure: go.Figure, model: LpvModel, points: FloatArray, row: int) -> None:
-    values, *deviations = poles_with_deviations(model, points)
-    middle, half, x = _part(values, row), QUANTILE_95 * deviations[row - 1], points[:, 0].tolist()
-    for i in range(values.shape[1]):
-        add_band(figure, x, (middle - half)[:, i].tolist(), (middle + half)[:, i].tolist(), colour(i), row, 0.3)
-        name = "model" if values.shape[1] == 1 else f"model, pole {i + 1}"
+    middle, deviation = poles_of(model, points).part(row - 1)
+    half, x = QUANTILE_95 * deviation, points[:, 0]
+    for i, curve in enumerate(middle.T):
+        add_band(figure, x, curve - half[:, i], curve + half[:, i], colour(i), row)
+        name = "model" if middle.shape[1] == 1 else f"model, pole {i + 1}"
         line = {"color": colour(i), "width": 2}
-        figure.add_scatter(x=x, y=middle[:, i], mode="lines", line=line, name=name, showlegend=row == 1, row=row, col=1)
+        figure.add_scatter(x=x, y=curve, mode="lines", line=line, name=name, showlegend=row == 1, row=row, col=1)
 
 
 def _add_local(figure: go.Figure, local: Sequence[LocalEstimate], row: int) -> None:
-    at, values = [], []
-    for found in local:
-        for pole in found.model.structure.poles(found.model.zeta):
-            at.append(found.model.operating_point[0])
-            values.append(float(_part(pole, row)))
-    if values:
-        marker = {"symbol": "circle-open", "size": 9, "color": colour(1), "line": {"width": 2}}
-        name = "local estimates"
-        figure.add_scatter(
-            x=at, y=values, mode="markers", marker=marker, name=name, showlegend=row == 1, row=row, col=1
-        )
-
-
-def _add_truth(figure: go.Figure, truth: LpvModel, points: FloatArray, row: int) -> None:
-    values = np.sort_complex(truth.poles(points))
-    line = {"color": NEUTRAL, "dash": "dot", "width": 2}
-    for i in range(values.shape[1]):
-        show, y = row == 1 and i == 0, _part(values[:, i], row)
-        figure.add_scatter(x=points[:, 0], y=y, mode="lines", line=line, name="truth", showlegend=show, row=row, col=1)
+    if not local:
+        return
+    found = [local_poles(one.model).part(row - 1) for one in local]
+    order = found[0][0].shape[1]
+    at = np.repeat([one.model.operating_point[0] for one in local], order)
+    values, deviations = (np.concatenate([pair[i].ravel() for pair in found]) for i in (0, 1))
+    marker = {"symbol": "circle-open", "size": 8, "color": colour(1), "line": {"width": 2}}
+    error = {"type": "data", "array": QUANTILE_95 * deviations, "thickness": 1.5, "width": 4, "color": colour(1)}
+    figure.add_scatter(
+        x=at,
+        y=values,
+        error_y=error,
+        mode="markers",
+        marker=marker,
+        name="local estimates",
+        showlegend=row == 1,
+        row=row,
+        col=1,
+    )
 
 
 def _table(model: LpvModel, points: FloatArray, axes: Axes, truth: LpvModel | None) -> Table:
-    chosen = points[np.linspace(0, len(points) - 1, TABLE_ROWS).astype(int)]
-    values, real, imaginary = poles_with_deviations(model, chosen)
+    chosen = _some(points)
+    found = poles_of(model, chosen)
     true = None if truth is None else np.sort_complex(truth.poles(chosen))
     rows: list[tuple[str, ...]] = []
     for m, point in enumerate(chosen):
-        for x, pole in enumerate(values[m]):
-            imaginary_part = estimate(pole.imag, imaginary[m, x]) if pole.imag else "0"
-            row = (axes.point(tuple(point)), estimate(pole.real, real[m, x]), imaginary_part)
+        for x, pole in enumerate(found.values[m]):
+            imaginary = estimate(pole.imag, found.imaginary_deviation[m, x]) if pole.imag else "0"
+            row = (axes.point(tuple(point)), estimate(pole.real, found.real_deviation[m, x]), imaginary)
             rows.append(row if true is None else (*row, _complex(true[m, x])))
     heads = ("operating point", "real part ± standard deviation", "imaginary part ± standard deviation")
     return Table(heads if true is None else (*heads, "truth"), tuple(rows))
+
+
+def _accuracy_table(models: Sequence[tuple[str, LpvModel]], points: FloatArray, axes: Axes) -> Table:
+    chosen = _some(points)
+    deviations = [QUANTILE_95 * poles_of(model, chosen).real_deviation for _, model in models]
+    rows = []
+    for m, point in enumerate(chosen):
+        each = (", ".join(f"±{significant(value, 2)}" for value in deviation[m]) for deviation in deviations)
+        rows.append((axes.point(tuple(point)), *each))
+    return Table(("operating point", *(name for name, _ in models)), tuple(rows), "95 % half-widths of the real parts")
+
+
+def _some(points: FloatArray) -> FloatArray:
+    return np.asarray(points[np.linspace(0, len(points) - 1, TABLE_ROWS).astype(int)])
 
 
 def _complex(value: complex) -> str:

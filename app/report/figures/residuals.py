@@ -42,11 +42,11 @@ def autocorrelation(error: FloatArray, lags: int) -> FloatArray:
     return np.array([error[lag:] @ error[:-lag] for lag in range(1, lags + 1)]) / float(error @ error)
 
 
-def test_table(tests: Sequence[tuple[str, TestResult]]) -> Table:
-    """Tests with what they are about."""
-    heads = ("of", "test", "statistic", "degrees of freedom", "p-value")
+def test_table(tests: Sequence[TestResult]) -> Table:
+    """Tests of the residuals."""
+    heads = ("test", "statistic", "degrees of freedom", "p-value")
     rows = tuple(
-        (of, test.name, significant(test.statistic), significant(test.degrees_of_freedom), significant(test.p_value, 2))
-        for of, test in tests
+        (test.name, significant(test.statistic), significant(test.degrees_of_freedom), significant(test.p_value, 2))
+        for test in tests
     )
     return Table(heads, rows, "A p-value below 0.05 comes up in one test of twenty when the model is right.")

@@ -11,6 +11,9 @@ from app.report.style import NEUTRAL, colour, new_figure
 from identification.signals import OperatingPoint
 from oed.realisation import RealisedSignal
 
+LONGEST_TABLE = 500
+ROUNDING = 1e-10
+
 
 def signals(points: Sequence[OperatingPoint], realised: Sequence[RealisedSignal], axes: Axes) -> Plot:
     """One period of the signal of each operating point, with the amplitude limit."""
@@ -25,7 +28,17 @@ def signals(points: Sequence[OperatingPoint], realised: Sequence[RealisedSignal]
         figure.update_yaxes(title=axes.input_unit, row=row, col=1)
     figure.update_xaxes(title="time (s)", row=len(titles), col=1)
     caption = f"One period of the {axes.input_name} at each operating point; dotted, the amplitude limit."
-    return Plot(figure, caption, signal_table(points, realised, axes))
+    return Plot(figure, caption, _samples(points, realised, axes))
+
+
+def _samples(points: Sequence[OperatingPoint], realised: Sequence[RealisedSignal], axes: Axes) -> Table:
+    """The first samples of the signals."""
+    length = min(LONGEST_TABLE, max(signal.period for signal in realised))
+    rows = []
+    for t in range(length):
+        values = (significant(float(signal.signal[t])) if t < signal.period else "" for signal in realised)
+        rows.append((significant(t * realised[0].sample_time), *values))
+    return Table(("time (s)", *(axes.point(point) for point in points)), tuple(rows), axes.input)
 
 
 def signal_table(points: Sequence[OperatingPoint], realised: Sequence[RealisedSignal], axes: Axes) -> Table:
@@ -53,6 +66,7 @@ def signal_table(points: Sequence[OperatingPoint], realised: Sequence[RealisedSi
 
 
 def _worst_line(signal: RealisedSignal) -> str:
+    """In relation to what was asked; what is left of an exact multisine is rounding, whose digits say nothing."""
     wanted = signal.requested_energies > 0
-    error = signal.achieved_energies[wanted] / signal.requested_energies[wanted] - 1
-    return significant(float(np.abs(error).max()), 1)
+    error = float(np.abs(signal.achieved_energies[wanted] / signal.requested_energies[wanted] - 1).max())
+    return f"below {significant(ROUNDING, 1)}" if error < ROUNDING else significant(error, 1)

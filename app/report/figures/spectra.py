@@ -26,8 +26,13 @@ def spectra(experiments: Sequence[DesignedExperiment], samples: int, sample_time
         else:
             _add_lines(figure, experiment, samples, sample_time, name, i)
     figure.update_xaxes(title="frequency (rad/s)", range=[0, np.pi / sample_time])
-    figure.update_yaxes(title=labelled("energy density NΦ, or energy of a line", axes.energy_unit), rangemode="tozero")
-    caption = "Spectrum of the input at each operating point; the area under NΦ over ±π, divided by 2π, is the energy."
+    smooth = all(isinstance(experiment.spectrum, FirSpectrum) for experiment in experiments)
+    figure.update_yaxes(title=labelled("NΦ" if smooth else "energy", axes.energy_unit), rangemode="tozero")
+    caption = "Spectrum of the input at each operating point: " + (
+        "N times the power density Φ, whose mean over all frequencies is the energy."
+        if smooth
+        else "energy of each line."
+    )
     return Plot(figure, caption, _table(experiments, samples, sample_time, axes))
 
 
