@@ -32,7 +32,7 @@ class Container:
 
     def start(self) -> None:
         """Take the data directory, bring the tables up to date, go on with interrupted jobs."""
-        self.settings.data_dir.mkdir(parents=True, exist_ok=True)
+        self.settings.data_dir.mkdir(mode=0o700, parents=True, exist_ok=True)
         self._lock.acquire()
         try:
             self.arrays.prepare()

@@ -31,6 +31,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         middleware=_guards(settings),
         generate_unique_id_function=operation_id,
         separate_input_output_schemas=False,
+        redirect_slashes=False,
         openapi_url="/v1/openapi.json",
         docs_url=None,
         redoc_url=None,

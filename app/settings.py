@@ -24,7 +24,7 @@ class Settings(BaseSettings):
     workers: int = Field(default=2, ge=1, le=256, description="jobs that run at the same time")
     job_time_limit_seconds: float = Field(default=3600.0, gt=0, description="a job that runs longer is ended")
     job_memory_limit_bytes: int = Field(default=4 * GIBIBYTE, ge=256 * MEBIBYTE, description="address space of a job")
-    job_attempts: int = Field(default=10, ge=1, description="starts of one job before it fails when servers keep dying")
+    job_attempts: int = Field(default=100, ge=1, description="server deaths during one job after which it fails")
     jobs_per_child: int = Field(default=100, ge=1, description="jobs that one child process runs before it is replaced")
     task_packages: tuple[str, ...] = Field(default=("app.jobs.tasks",), description="packages with the kinds of jobs")
     max_body_bytes: int = Field(default=64 * MEBIBYTE, ge=1024, description="largest request body")

@@ -19,6 +19,7 @@ from app.store.database import Database
 from app.store.resources import Resource, add_resource
 from app.store.rows import JobRow
 
+PATIENT_ATTEMPTS = 3
 Run = tuple[str, int]
 Progress = tuple[float, str]
 
@@ -40,8 +41,13 @@ class Journal:
         return len(rows)
 
     def claim(self) -> ClaimedJob | None:
-        """Take the oldest queued job to run it, or None when there is none."""
-        queued = select(JobRow).where(JobRow.state == "queued").order_by(JobRow.id).limit(1)
+        """Take the oldest queued job to run it, or None when there is none.
+
+        Jobs that were interrupted again and again come last: should one of them be what brings the server down, the
+        others are done before it is tried once more.
+        """
+        queued = select(JobRow).where(JobRow.state == "queued").limit(1)
+        queued = queued.order_by(JobRow.attempts > PATIENT_ATTEMPTS, JobRow.id)
         with self._database.read() as session:
             if session.scalars(queued).first() is None:
                 return None

@@ -15,7 +15,7 @@ from sqlalchemy.exc import StatementError
 
 from app.errors import ConflictError, NotFoundError, UnprocessableError
 from app.jobs.hub import Hub
-from app.jobs.journal import Journal, Run
+from app.jobs.journal import PATIENT_ATTEMPTS, Journal, Run
 from app.jobs.ledger import Ledger
 from app.jobs.records import FINAL_STATES, JobRecord
 from app.store.database import Database
@@ -109,6 +109,15 @@ def test_every_job_is_claimed_once_by_many_threads(books: Books) -> None:
 def test_jobs_start_in_the_order_of_submission(books: Books) -> None:
     jobs = [books.submit().id for _ in range(5)]
     assert [books.claim()[0] for _ in range(5)] == jobs
+
+
+def test_a_job_that_may_bring_the_server_down_waits_for_the_others(books: Books) -> None:
+    suspect = books.submit().id
+    for _ in range(PATIENT_ATTEMPTS + 1):
+        assert books.claim()[0] == suspect
+        books.journal.recover(1000)
+    later = books.submit().id
+    assert [books.claim()[0] for _ in range(2)] == [later, suspect]
 
 
 def test_a_run_that_is_over_can_report_nothing(books: Books) -> None:
