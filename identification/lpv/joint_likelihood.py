@@ -184,13 +184,13 @@ def _require_information(
 def _outcome(solution: LeastSquaresSolution, residuals: JointResiduals, variances: dict[str, float]) -> Outcome:
     """The outcome of the search, unless the experiments leave parameters open for every model alike.
 
-    At the edge of stability a record's noise can seem to determine what its input does not excite; a model whose zeros
-    lie well inside shows it.
+    An initial state fitted to noise can seem to determine what the input does not excite; the settled part of the
+    response of a model with fast poles shows it.
     """
     structure = residuals.structure
     if structure.is_discrete:
-        inside = shrunk_zeros(structure, residuals.transfer, solution.x, 0.7)
-        if is_singular(residuals.white(inside, variances)[1]):
+        inside = shrunk_zeros(structure, residuals.transfer, solution.x, 0.3)
+        if is_singular(residuals.settled_jacobian(inside, variances)):
             advice = "the experiments do not determine all parameters; excite more frequencies or choose a lower order"
             return Outcome("not_identifiable", advice, solution.outcome.iterations)
     records = [e for e in residuals.experiments if isinstance(e, TimeRecord)]

@@ -10,11 +10,13 @@ from identification.arrays import FloatArray
 from identification.errors import NotIdentifiableError, RangeError
 from identification.initial_conditions import InitialConditions, errors_from, free_parameters
 from identification.least_squares import LeastSquaresSolution
-from identification.likelihood import response_errors
+from identification.likelihood import prediction_errors, response_errors
 from identification.lpv.stacking import prior_rows
 from identification.models import LpvModel, RationalStructure
 from identification.response_tests import real_count, variance_inflation
 from identification.signals import FrequencyResponse, Measurement, TimeRecord
+
+SETTLING = 40
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,6 +107,18 @@ class JointResiduals:
             jacobians.append(jacobian @ (transfer / deviation))
         root, target = self._prior
         return np.concatenate([*residuals, root @ theta - target]), np.concatenate([*jacobians, root])
+
+    def settled_jacobian(self, theta: FloatArray, variances: Mapping[str, float]) -> FloatArray:
+        """Derivatives as in `white` for a model with fast poles, without the responses to initial states, (R, k)."""
+        jacobians = []
+        for m, (transfer, data) in enumerate(zip(self.transfer, self.experiments, strict=True)):
+            if isinstance(data, TimeRecord) and free_parameters(self.structure, self.initial):
+                first = min(SETTLING + self.structure.n_k, len(data) // 2)
+                jacobian = prediction_errors(self.structure, transfer @ theta, data)[1][first:]
+            else:
+                jacobian = self.local(m, theta)[1]
+            jacobians.append(jacobian @ (transfer / self.deviation(m, variances)))
+        return np.concatenate([*jacobians, self._prior[0]])
 
     def parts(self) -> list[slice]:
         """Where the rows of each experiment stand in the residuals."""
