@@ -1,7 +1,6 @@
 """Models that relax: real poles with positive residues, as of resistors and RC arcs in series."""
 
 import numpy as np
-from scipy.optimize import nnls
 
 from identification.arrays import ComplexArray, FloatArray
 from identification.errors import MisuseError
@@ -97,6 +96,8 @@ def _amplitudes(
     poles: tuple[float, ...],
 ) -> tuple[FloatArray, float]:
     """(r, R, L) ≥ 0 for given poles by non-negative least squares, and the cost."""
+    from scipy.optimize import nnls  # slow to load, and describing models needs none of it
+
     columns = _parts(weights[:, None] * _columns(structure, x, np.array(poles)))
     lengths = np.linalg.norm(columns, axis=0)
     amplitudes, cost = nnls(columns / lengths, _parts(weights * data.response))
