@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 from scipy import stats
-from scipy.signal import medfilt
 
 from identification.arrays import ComplexArray, FloatArray
 from identification.errors import RangeError
@@ -159,17 +159,22 @@ def _trend(y: FloatArray, period: int | None, periods: int) -> float | None:
 
 
 def _outliers(y: FloatArray, period: int | None, periods: int) -> int:
-    """Samples further than eight robust standard deviations from the median over periods, or over five neighbours."""
+    """Samples further than eight robust standard deviations from their median over periods.
+
+    Without periods: from the median of five neighbours, and by more than four times what the other four span.
+    """
     if period is not None and periods >= 3:
         blocks = y[: periods * period].reshape(periods, period)
         late = blocks[1:] if periods > 3 else blocks
-        rest = (late - np.median(late, axis=0)).ravel()
-    else:
-        rest = (y - medfilt(y, 5))[2:-2]
-    if rest.size < 8:
+        rest, local = (late - np.median(late, axis=0)).ravel(), np.zeros(late.size)
+    elif len(y) < 12:
         return 0
+    else:
+        around = sliding_window_view(y, 5)
+        rest = around[:, 2] - np.median(around, axis=1)
+        local = 4 * np.ptp(around[:, [0, 1, 3, 4]], axis=1)
     scale = max(1.4826 * float(np.quantile(abs(rest), 0.6)), 1e-6 * float(np.std(y)))
-    return int(np.sum(abs(rest) > 8 * scale))
+    return int(np.sum(abs(rest) > 8 * scale + local))
 
 
 def _with_warnings(result: RecordInspection, record: TimeRecord) -> RecordInspection:

@@ -23,6 +23,9 @@ from identification.signals import FrequencyResponse
 
 DELAY_ITERATIONS = 6
 FINEST = 2000
+SETTLED = 1e-4
+
+Basis = tuple[ComplexArray, FloatArray]
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +40,7 @@ class Starts:
         order = np.argsort(self.cost, kind="stable")
         kept: list[int] = []
         for i in order[np.isfinite(self.cost[order])]:
-            if not kept or self.cost[i] > self.cost[kept[-1]] * (1 + 1e-6):
+            if not kept or self.cost[i] > self.cost[kept[-1]] * (1 + 1e-4):
                 kept.append(int(i))
         return Starts(self.zeta[kept[:count]], self.cost[kept[:count]])
 
@@ -66,7 +69,8 @@ def levy(structure: RationalStructure, data: FrequencyResponse, delay: float = 0
     require_same_sampling(structure, data)
     scaled = replace(structure, frequency_scale=frequency_scale(structure, data))
     problem = LinearProblem.of(scaled, data, np.ones(len(data)))
-    step = _linear_step(problem, np.ones((1, len(data))), np.array([delay]))
+    basis = orthonormal(problem, np.ones((1, len(data))))
+    step = _linear_step(problem, basis, problem.advanced(np.array([delay])))
     constant = np.real(step.coefficients[0, 0, : structure.n_a + 1])
     _, values, right = np.linalg.svd(step.triangle[0])
     inverse = np.where(values > values[-1], values[-1] / np.where(values > 0, values, 1.0), 1.0) ** 2
@@ -168,9 +172,8 @@ def delay_spacing(problem: LinearProblem) -> float:
 
 @dataclass(frozen=True, eq=False)
 class _Step:
-    """One linearised problem in its basis: `values` (K, F, m), `coefficients` (K, m, m), `projection`, `triangle`."""
+    """One linearised problem in its basis: `coefficients` (K, m, m) of the basis, B from A, and R of what is left."""
 
-    values: ComplexArray
     coefficients: FloatArray
     projection: FloatArray
     triangle: FloatArray
@@ -179,49 +182,54 @@ class _Step:
         return np.asarray((self.projection @ denominator[..., None])[..., 0])
 
 
-def _linear_step(problem: LinearProblem, magnitude: FloatArray, tau: FloatArray) -> _Step:
-    structure = problem.structure
-    values, coefficients = orthonormal(problem, magnitude)
+def _linear_step(problem: LinearProblem, basis: Basis, advanced: ComplexArray) -> _Step:
+    structure, (values, coefficients) = problem.structure, basis
     numerator = values[..., : structure.n_b + 1]
-    rest = problem.advanced(tau)[..., None] * values[..., : structure.n_a + 1]
-    projection = np.zeros((len(tau), structure.n_b + 1, structure.n_a + 1))
+    rest = advanced[..., None] * values[..., : structure.n_a + 1]
+    projection = np.zeros((len(values), structure.n_b + 1, structure.n_a + 1))
     for _ in range(2):
         part = inner(numerator, rest)
         rest = rest - numerator @ part
         projection = projection + part
     triangle = np.linalg.qr(np.concatenate([rest.real, rest.imag], axis=1), mode="r")
-    return _Step(values, coefficients, projection, np.asarray(triangle))
+    return _Step(coefficients, projection, np.asarray(triangle))
 
 
 def _iterate(problem: LinearProblem, first: FloatArray, tau: FloatArray, stable: bool, iterations: int) -> Starts:
     """Sanathanan–Koerner from |A_prev| (K, F) at delays τ (K,), all at once; the best iterate of each is kept."""
-    structure, magnitude = problem.structure, first
+    structure, magnitude, advanced = problem.structure, first, problem.advanced(tau)
+    basis = orthonormal(problem, magnitude)
     zeta, cost = np.zeros((len(tau), structure.size)), np.full(len(tau), np.inf)
     for _ in range(iterations if structure.n_a else 1):
-        step = _linear_step(problem, magnitude, tau)
-        t = np.linalg.svd(step.triangle)[2][:, -1, :]
-        a = (step.coefficients[:, : structure.n_a + 1, : structure.n_a + 1] @ t[..., None])[..., 0]
-        a = stabilised(structure, a) if stable else a
-        denominator = a @ (problem.x ** np.arange(structure.n_a + 1)[:, None])
-        level = abs(denominator).max(axis=1, keepdims=True)
-        a, denominator = a / level, denominator / level
-        size = abs(a) @ abs(problem.x) ** np.arange(structure.n_a + 1)[:, None]
-        magnitude = np.maximum(abs(denominator), 1e-12 * size)
-        b, new_cost = _numerator(problem, denominator, magnitude, tau)
+        before = magnitude
+        a, denominator, magnitude = _denominator(problem, _linear_step(problem, basis, advanced), stable)
+        basis = orthonormal(problem, magnitude)
+        b, new_cost = _numerator(problem, basis, problem.weights * advanced * denominator / magnitude)
         new_zeta = as_zeta(structure, a, b, tau)
         better = (new_cost < cost) & np.all(np.isfinite(new_zeta), axis=-1)
         zeta[better], cost[better] = new_zeta[better], new_cost[better]
+        if np.all(abs(magnitude - before) <= SETTLED * magnitude):
+            break
     return Starts(zeta, cost)
 
 
-def _numerator(
-    problem: LinearProblem, denominator: ComplexArray, magnitude: FloatArray, tau: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """The best B (K, n_b + 1), ascending, for given denominators (K, F), and the weighted cost (K,)."""
-    values, coefficients = orthonormal(problem, magnitude)
+def _denominator(problem: LinearProblem, step: _Step, stable: bool) -> tuple[FloatArray, ComplexArray, FloatArray]:
+    """A that solves a linearised problem: ascending coefficients, values of size one at most, and sizes, not zero."""
+    structure = problem.structure
+    t = np.linalg.svd(step.triangle)[2][:, -1, :]
+    a = (step.coefficients[:, : structure.n_a + 1, : structure.n_a + 1] @ t[..., None])[..., 0]
+    a = stabilised(structure, a) if stable else a
+    powers = problem.x ** np.arange(structure.n_a + 1)[:, None]
+    level = abs(a @ powers).max(axis=1, keepdims=True)
+    a = a / level
+    denominator = a @ powers
+    return a, denominator, np.maximum(abs(denominator), 1e-12 * (abs(a) @ abs(powers)))
+
+
+def _numerator(problem: LinearProblem, basis: Basis, target: ComplexArray) -> tuple[FloatArray, FloatArray]:
+    """The best B (K, n_b + 1), ascending, for w Ĝ A/|A| (K, F) and the basis of that |A|, and the cost (K,)."""
     count = problem.structure.n_b + 1
-    values, coefficients = values[..., :count], coefficients[:, :count, :count]
-    target = (problem.weights * problem.advanced(tau) * denominator / magnitude)[..., None]
-    b = inner(values, target)
-    rest = target - values @ b
-    return (coefficients @ b)[..., 0], np.sum(abs(rest[..., 0]) ** 2, axis=-1)
+    values, coefficients = basis[0][..., :count], basis[1][:, :count, :count]
+    b = inner(values, target[..., None])
+    rest = target - (values @ b)[..., 0]
+    return (coefficients @ b)[..., 0], np.sum(abs(rest) ** 2, axis=-1)

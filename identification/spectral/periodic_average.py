@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
 import numpy as np
-from scipy import stats
+from scipy.special import fdtri
 
 from identification.arrays import BoolArray, ComplexArray, FloatArray
 from identification.errors import MisuseError, RangeError
@@ -26,7 +26,8 @@ class PeriodicAverage:
     Excited lines are those with |Ū_k| above `threshold` times the largest and above four of its standard deviations.
     With `drop_periods` None, leading periods, at most half of them, are dropped while the energy of their difference
     from the mean of the later half is beyond the 99.9 % quantile of what the noise there gives (F distribution).
-    Variances below rounding errors are set to those. Assumes that the period is exact and the experiment in open loop.
+    Variances below rounding errors are set to those. Assumes an exact period, open loop, and noise whose
+    correlation is short against the period.
     """
 
     kind: ClassVar[str] = "periodic_average"
@@ -113,7 +114,7 @@ def transient_periods(y: ComplexArray) -> int:
     noise = np.var(late, axis=0, ddof=1)
     expected = float(np.sum(noise)) * (1 + 1 / half)
     effective = float(np.sum(noise)) ** 2 / max(float(np.sum(noise**2)) * (half - 1) / half, 1e-300)
-    limit = stats.f.ppf(0.999, max(2 * effective, 1.0), max(2 * effective * (half - 1), 1.0))
+    limit = fdtri(max(2 * effective, 1.0), max(2 * effective * (half - 1), 1.0), 0.999)
     rounding = 1e-26 * float(np.sum(abs(late) ** 2)) / half
     energy = np.sum(abs(y - late.mean(axis=0)) ** 2, axis=1)
     strange = energy[: count - half] > max(limit * expected, rounding)
