@@ -5,7 +5,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-HEAVY = ("cvxpy", "clarabel", "plotly", "rich", "typer")
+HEAVY = ("scipy.signal", "scipy.stats", "scipy.optimize", "cvxpy", "clarabel", "plotly", "rich", "typer")
 SCRIPT = f"""
 import sys
 from app.main import create_app
