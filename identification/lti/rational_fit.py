@@ -58,7 +58,7 @@ class RationalFit:
 
         `fit_percent` is 100 (1 − ‖Ĝ − G‖/‖Ĝ − mean Ĝ‖) (‖Ĝ‖ for a constant Ĝ). Raises MisuseError for a structure with
         a noise model or of another time domain, and where the weighting asked for is not there; NotIdentifiableError
-        for fewer real numbers than coefficients. A search that fails says so in `outcome`.
+        for fewer real numbers than unknowns. A search that fails says so in `outcome`.
         """
         self._check(structure, data)
         inflation = variance_inflation(data.variance_degrees_of_freedom) if self.weighting == "variance" else 1.0
@@ -67,7 +67,7 @@ class RationalFit:
         solution = self._search(scaled, data, weights)
         factors = rescale(scaled, structure.frequency_scale)
         free = real_count(data) - structure.size
-        scale = 1.0 if self.weighting == "variance" else (solution.cost / free if free else 0.0)
+        scale = 1.0 if self.weighting == "variance" else solution.cost / free
         covariance = inflation * self._covariance(solution, data, weights, scale) * np.outer(factors, factors)
         zeta = factors * solution.x
         model = LocalModel(structure, data.operating_point, zeta, covariance, scale)
@@ -87,10 +87,10 @@ class RationalFit:
             raise MisuseError(
                 "a frequency response says nothing about the noise model; set n_c and n_d to zero", "structure"
             )
-        if real_count(data) < structure.size:
+        if real_count(data) < structure.size + (self.weighting != "variance"):
             raise NotIdentifiableError(
-                f"{len(data)} frequencies hold {real_count(data)} real numbers for {structure.size} coefficients;"
-                " measure more frequencies or choose a lower order",
+                f"{len(data)} frequencies hold {real_count(data)} real numbers for {structure.size} coefficients"
+                f"{'' if self.weighting == 'variance' else ' and the noise'}; measure more frequencies or choose a lower order",
                 "frequencies",
             )
         if not np.any(data.response):

@@ -174,6 +174,8 @@ def test_what_cannot_be_fitted_is_refused():
         RELATIVE.estimate(RationalStructure(4, 3, sample_time=0.1), data)
     with pytest.raises(RangeError, match="zero at every"):
         RELATIVE.estimate(RationalStructure(1, 0, sample_time=0.1), replace(data, response=np.zeros(3)))
+    with pytest.raises(NotIdentifiableError, match="and the noise"):
+        RELATIVE.estimate(RationalStructure(3, 2, sample_time=0.1), data)
     poor = replace(data, variance=np.ones(3), variance_degrees_of_freedom=2.0)
     with pytest.raises(MisuseError, match="four periods"):
         RationalFit().estimate(RationalStructure(1, 0, sample_time=0.1), poor)
