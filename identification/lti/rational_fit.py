@@ -88,9 +88,10 @@ class RationalFit:
                 "a frequency response says nothing about the noise model; set n_c and n_d to zero", "structure"
             )
         if real_count(data) < structure.size + (self.weighting != "variance"):
+            also = "" if self.weighting == "variance" else " and the noise"
             raise NotIdentifiableError(
-                f"{len(data)} frequencies hold {real_count(data)} real numbers for {structure.size} coefficients"
-                f"{'' if self.weighting == 'variance' else ' and the noise'}; measure more frequencies or choose a lower order",
+                f"{len(data)} frequencies hold {real_count(data)} real numbers for {structure.size} coefficients{also};"
+                " measure more frequencies or choose a lower order",
                 "frequencies",
             )
         if not np.any(data.response):
