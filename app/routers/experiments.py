@@ -17,7 +17,10 @@ from app.services.jobs import accepted
 router = APIRouter(prefix="/experiments", tags=["experiments"])
 
 Finite = Annotated[float, Form(allow_inf_nan=False)]
-Upload = Annotated[UploadFile, File(description="a .csv with a header line, .npz or .mat (level 5) file")]
+Upload = Annotated[
+    UploadFile,
+    File(description="a .csv with a header line, .npz or .mat (level 5) file", json_schema_extra={"format": "binary"}),
+]
 
 
 @router.post("", status_code=202)
