@@ -78,7 +78,7 @@ class PredictionError:
             lambda zeta: errors_from(structure, zeta, record, self.initial_conditions),
             lambda zeta: errors_only(structure, zeta, record, self.initial_conditions),
             lambda zeta: bool(structure.stable(zeta)),
-            first_estimates if sufficient else [next(first_estimates)],
+            first_estimates if sufficient else [next(first_estimates)[:1]],
         )
 
     def _fit(self, model: LocalModel, record: TimeRecord) -> float:

@@ -10,6 +10,7 @@ import identification.lpv
 import identification.lti
 import identification.spectral
 from identification.bases.polynomial import Polynomial
+from identification.errors import MisuseError
 from identification.models import LocalModel, LpvModel, RationalStructure
 from identification.registry import discover
 from identification.scheduling import ParameterDependence, ProductBasis, SchedulingVariable
@@ -41,6 +42,21 @@ def record_at(p):
     zeta = (DEPENDENCE.matrix([[p]]) @ THETA)[0]
     y = simulate(PLANT, zeta, u, periodic=True) + 0.05 * g.standard_normal(len(u))
     return TimeRecord(u, y, 0.5, (p,), PERIOD)
+
+
+def random_record_at(p):
+    g = np.random.default_rng(int(100 * p) + 2)
+    u, e = g.standard_normal((2, PERIOD * PERIODS))
+    return TimeRecord(u, simulate(PLANT, (DEPENDENCE.matrix([[p]]) @ THETA)[0], u, 0.05 * e), 0.5, (p,))
+
+
+def spectral_record(estimator):
+    """A periodic record, or a random one for an estimator that refuses it."""
+    try:
+        estimator.estimate(record_at(0.5))
+    except MisuseError:
+        return random_record_at(0.5)
+    return record_at(0.5)
 
 
 def response_at(p):
@@ -122,8 +138,9 @@ def test_bases_span_what_they_say(plug_in):
 
 @named(SPECTRAL.values())
 def test_spectral_estimates_find_the_response(plug_in):
-    found = plug_in.example().estimate(record_at(0.5))
-    assert same(found, plug_in.example().estimate(record_at(0.5)))
+    record = spectral_record(plug_in.example())
+    found = plug_in.example().estimate(record)
+    assert same(found, plug_in.example().estimate(record))
     assert found.operating_point == (0.5,)
     assert found.sample_time == 0.5
     truth = PLANT.plant_response((DEPENDENCE.matrix([[0.5]]) @ THETA)[0], found.frequencies)

@@ -177,17 +177,17 @@ def test_covariances_of_two_steps_and_of_one_are_true():
     dependence = polynomial_dependence(1, 1)
     theta = np.array([-0.8, 0.1, 2.0, -0.2])
     two_step, joint = [], []
-    for seed in range(300):
+    for seed in range(250):
         g = np.random.default_rng([9, seed])
         records = []
         for p in (0.0, 4.0, 8.0):
-            u, e = g.standard_normal((2, 1000))
+            u, e = g.standard_normal((2, 500))
             records.append(TimeRecord(u, simulate(structure, (dependence.matrix([[p]]) @ theta)[0], u, e), 1.0, (p,)))
         local = [PredictionError("zero").estimate(structure, record) for record in records]
         first = GeneralisedLeastSquares().estimate(structure, dependence, records, local).model
         two_step.append(distance(first, theta))
         joint.append(distance(JointLikelihood("zero").estimate(structure, dependence, records, local).model, theta))
-    low, high = stats.binom.interval(0.99, 300, 0.05)
+    low, high = stats.binom.interval(0.99, 250, 0.05)
     for distances in (np.array(two_step), np.array(joint)):
         assert low <= np.sum(distances > stats.chi2.isf(0.05, 4)) <= high
         assert np.sum(1.3 * distances > stats.chi2.isf(0.05, 4)) > high
