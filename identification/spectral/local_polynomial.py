@@ -24,8 +24,11 @@ class LocalPolynomial:
     Nyquist frequency are not used. Lines with less input than `threshold` times the largest, or in whose window plant
     and transient cannot be told apart (input too smooth or on too few lines), are left out.
 
-    Estimates less than 2n + 1 lines apart share data and are correlated. `stride` keeps every so-manieth line; the
-    default, 2n + 1, makes the windows disjoint, so that a χ² or likelihood over the lines is honest; 1 is for drawing.
+    A record with a period of which it holds P is cut to whole periods; every P-th line is excited, windows are P times
+    as wide, and the lines between, where there is no input, show transient and noise.
+
+    Estimates less than 2n + 1 excited lines apart share data and are correlated. `stride` keeps every so-manieth line;
+    the default, 2n + 1, makes windows disjoint, so that a χ² or likelihood over the lines is honest; 1 is for drawing.
     Assumes that the input is known exactly, open loop, and noise that is flat over a window.
     """
 
@@ -59,30 +62,32 @@ class LocalPolynomial:
 
     @property
     def window(self) -> int:
-        """Lines in a window, 2n + 1."""
+        """Excited lines in a window, 2n + 1."""
         return 2 * self.half_window + 1
 
     @property
     def degrees_of_freedom(self) -> int:
-        """d, complex degrees of freedom of each variance."""
+        """d, complex degrees of freedom of each variance where all lines are excited."""
         return self.window - 2 * (self.degree + 1)
 
     def estimate(self, record: TimeRecord) -> FrequencyResponse:
         """Ĝ with variances at lines of the record; raises MisuseError when it is too short or its input too poor."""
-        count = (len(record) - 1) // 2
-        if count < self.window:
+        apart = record.period_count
+        samples = len(record) if record.period is None else apart * record.period
+        count, half = (samples - 1) // 2, self.half_window * apart
+        if count < 2 * half + 1:
             raise MisuseError(
-                f"the record of {len(record)} samples has {count} lines and a window takes {self.window}; record longer"
+                f"the record of {samples} samples has {count} lines and a window takes {2 * half + 1}; record longer"
                 " or narrow the window",
                 "half_window",
             )
-        u, y = (np.fft.rfft(x)[1 : count + 1] for x in (record.input, record.output))
+        u, y = (np.fft.rfft(x[-samples:])[1 : count + 1] for x in (record.input, record.output))
         if not u.any():
             raise MisuseError("the input is constant; no frequency response can be seen", "input")
         stride = self.window if self.stride is None else self.stride
-        first = self.half_window if stride > 1 else 0
-        centres = np.arange(min(first, count - 1), count, stride)
-        parts = [self._windows(u, y, chunk) for chunk in _chunks(centres)]
+        excited = np.arange(apart - 1, count, apart)
+        centres = excited[min(self.half_window if stride > 1 else 0, len(excited) - 1) :: stride]
+        parts = [self._windows(u, y, chunk, half) for chunk in _chunks(centres, CHUNK // apart + 1)]
         response, variance, usable = (np.concatenate([part[i] for part in parts]) for i in range(3))
         if not usable.any():
             raise MisuseError(
@@ -90,23 +95,22 @@ class LocalPolynomial:
                 " record or excite every line with random phases",
                 "input",
             )
-        omega = 2 * np.pi * (centres[usable] + 1) / (len(record) * record.sample_time)
         return FrequencyResponse(
-            omega,
+            2 * np.pi * (centres[usable] + 1) / (samples * record.sample_time),
             response[usable],
             record.operating_point,
             None if self.continuous_time else record.sample_time,
             variance[usable],
-            float(self.degrees_of_freedom),
+            float(2 * half + 1 - 2 * (self.degree + 1)),
         )
 
     def _windows(
-        self, u: ComplexArray, y: ComplexArray, centres: IntArray
+        self, u: ComplexArray, y: ComplexArray, centres: IntArray, half: int
     ) -> tuple[ComplexArray, FloatArray, BoolArray]:
         """Ĝ, σ̂² and whether they can be used, at the lines `centres` (K,) of the spectra (F,)."""
-        start = np.clip(centres - self.half_window, 0, len(u) - self.window)
-        lines = start[:, None] + np.arange(self.window)
-        powers = ((lines - centres[:, None]) / self.half_window)[..., None] ** np.arange(self.degree + 1)
+        start = np.clip(centres - half, 0, len(u) - 2 * half - 1)
+        lines = start[:, None] + np.arange(2 * half + 1)
+        powers = ((lines - centres[:, None]) / half)[..., None] ** np.arange(self.degree + 1)
         matrix = np.concatenate([powers * u[lines][..., None], powers + 0j], axis=-1)
         lengths = np.linalg.norm(matrix, axis=1, keepdims=True)
         lengths = np.where(lengths > 0, lengths, 1.0)
@@ -116,11 +120,11 @@ class LocalPolynomial:
         projected = np.einsum("kwm,kw->km", left.conj(), y[lines])
         response = np.sum(inverse * projected, axis=1)
         residual = y[lines] - np.einsum("kwm,km->kw", left, projected)
-        power = np.sum(abs(residual) ** 2, axis=1) / self.degrees_of_freedom
+        power = np.sum(abs(residual) ** 2, axis=1) / (2 * half + 1 - 2 * (self.degree + 1))
         floor = np.finfo(np.float64).eps ** 2 * (np.sum(abs(y[lines]) ** 2, axis=1) + np.mean(abs(y) ** 2))
         noise = np.maximum(power, np.maximum(floor, np.finfo(np.float64).tiny))
         return response, noise * np.sum(abs(inverse) ** 2, axis=1), usable
 
 
-def _chunks(centres: IntArray) -> Iterator[IntArray]:
-    return (centres[i : i + CHUNK] for i in range(0, len(centres), CHUNK))
+def _chunks(centres: IntArray, size: int) -> Iterator[IntArray]:
+    return (centres[i : i + size] for i in range(0, len(centres), size))

@@ -188,7 +188,8 @@ def test_what_cannot_be_fitted_is_refused():
 def test_units_of_signals_and_time_change_nothing_else(seed, gain, speed):
     generator = np.random.default_rng(seed)
     structure = RationalStructure(2, 1)
-    zeta = np.concatenate([np.poly(random_poles(generator, 2)).real[1:], [1.0, 3.0]])
+    size, damping = 10 ** generator.uniform(-0.5, 0.5), generator.uniform(0.1, 0.8)
+    zeta = np.array([2 * damping * size, size**2, 1.0, 3.0])
     data = noisy(response(structure, zeta, np.geomspace(0.01, 50, 60)), 0.02, seed)
     scaled = replace(data, frequencies=speed * data.frequencies, response=gain * data.response)
     one, other = RELATIVE.estimate(structure, data), RELATIVE.estimate(structure, scaled)

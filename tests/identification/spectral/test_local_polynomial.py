@@ -81,6 +81,21 @@ def test_lines_without_input_are_left_out():
     assert data.frequencies.max() < 2 * np.pi * 400 / 204.8
 
 
+def test_a_periodic_record_from_rest_is_calibrated_too():
+    """With a transient that averaging over all periods would take for plant."""
+    generator = np.random.default_rng(6)
+    ratios = []
+    for _ in range(60):
+        u = np.tile(generator.normal(size=512), 4)
+        y = simulate(*PLANT, u) + simulate(*NOISE, u, 0.2 * generator.normal(size=len(u)))
+        data = LocalPolynomial().estimate(TimeRecord(u, y, 0.1, (0.0,), 512))
+        at = data.frequencies * 51.2 / (2 * np.pi)
+        np.testing.assert_allclose(at, np.round(at), atol=1e-9)
+        ratios.append(abs(data.response - true(data)) ** 2 / data.variance)
+    assert data.variance_degrees_of_freedom == 49 - 6
+    assert np.mean(ratios) == pytest.approx(43 / 42, rel=0.1)
+
+
 def test_what_cannot_be_estimated_is_refused():
     one = record(np.random.default_rng(5), 200, 0.1)
     with pytest.raises(MisuseError, match="record longer"):
