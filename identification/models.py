@@ -144,7 +144,9 @@ class RationalStructure:
         return np.asarray(q ** np.arange(order + 1)[:, None])
 
     def _delay_factor(self, tau: FloatArray, omega: FloatArray) -> ComplexArray:
-        return np.asarray(np.exp(-1j * omega * tau.sum(axis=-1, keepdims=True)))
+        if not self.delay:
+            return np.ones(1, dtype=np.complex128)
+        return np.asarray(np.exp(-1j * omega * tau))
 
 
 def _monic(coefficients: FloatArray, powers: ComplexArray) -> ComplexArray:

@@ -72,12 +72,12 @@ def least_energy(
     best = _Bounds(np.inf, 0.0, np.zeros_like(targets), np.zeros(len(caps)))
     active = np.arange(min(len(targets), ACTIVE_TARGETS))
     for iteration in range(1, max_iterations + 1):
-        master = solve_master(start, targets[active], caps)
+        master = solve_master(start, targets[active], caps, accuracy=max(1e-8, 0.01 ** (iteration + 1)))
         offer = pricing.best(master.prices.sum(axis=0), 1 + master.cap_prices, start, master.weights)
         best = best.improved(start, master, offer.worth, targets, active, caps)
         if progress is not None:
             progress(iteration, best.gap)
-        if best.gap <= tolerance / 10 or not master.solved:
+        if best.gap <= tolerance / 4 or not master.solved:
             break
         active = _with_violated(active, start, master, targets)
         start = offer.blocks
@@ -128,6 +128,8 @@ class _Bounds:
 
     def sparse(self, targets: FloatArray, caps: FloatArray, tolerance: float, iterations: int) -> CertifiedSpectra:
         """Without operating points of negligible energy, as long as the gap stays within the tolerance."""
+        if not self.blocks:
+            return CertifiedSpectra([], [], self.prices, self.cap_prices, np.inf, self.lower_bound, iterations)
         energies = _energies(self.blocks, self.weights, len(caps))
         single = np.array([np.trace(weight) for weight in self.weights])
         used = np.array([energies[block.point] for block in self.blocks]) > NEGLIGIBLE * energies.max(initial=0.0)

@@ -83,6 +83,9 @@ def design(problem: DesignProblem, progress: Progress | None = None) -> Design:
     solution, problem_scaled = _solved(problem_scaled, progress)
     if isinstance(solution, Shortfall):
         return _unreachable(problem, _shortfall_advice(solution))
+    if not solution.blocks:
+        advice = "the solver found no spectra that meet the targets; relax the narrowest of the targets or the caps"
+        return _unreachable(problem, Outcome("not_converged", advice, solution.iterations))
     experiments = _experiments(problem_scaled, solution)
     binding = _binding(problem_scaled, solution, sources[open_targets])
     energies = (problem_scaled.unit * solution.energy, problem_scaled.unit * solution.lower_bound)

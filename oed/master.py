@@ -24,7 +24,12 @@ class MasterSolution:
 
 
 def solve_master(
-    blocks: Sequence[Block], targets: FloatArray, caps: FloatArray, *, shortfall_only: bool = False
+    blocks: Sequence[Block],
+    targets: FloatArray,
+    caps: FloatArray,
+    *,
+    shortfall_only: bool = False,
+    accuracy: float = 1e-8,
 ) -> MasterSolution:
     """The least energy over blocks b for targets R_j (J, k, k), under caps α (M,) (infinite: none).
 
@@ -48,7 +53,7 @@ def solve_master(
         matrix[-1, -1] = -1.0
         right, cost = np.append(right, 0.0), np.append(np.zeros(layout.size), 1.0)
         cones.append(clarabel.NonnegativeConeT(1))
-    solution = _solve(cost, matrix, right, cones)
+    solution = _solve(cost, matrix, right, cones, accuracy)
     x, z = np.array(solution.x), np.array(solution.z)[layout.size :]
     prices = np.array([smat(part, k) for part in z[len(capped) : len(capped) + len(goal)].reshape(j, -1)])
     cap_prices = np.zeros(len(caps))
@@ -119,8 +124,12 @@ def _cap_rows(blocks: Sequence[Block], layout: _Layout, capped: IntArray) -> Flo
     return rows
 
 
-def _solve(cost: FloatArray, matrix: FloatArray, right: FloatArray, cones: list[object]) -> clarabel.DefaultSolution:
-    return clarabel.DefaultSolver(_no_quadratic(len(cost)), cost, csc_array(matrix), right, cones, _settings()).solve()
+def _solve(
+    cost: FloatArray, matrix: FloatArray, right: FloatArray, cones: list[object], accuracy: float
+) -> clarabel.DefaultSolution:
+    return clarabel.DefaultSolver(
+        _no_quadratic(len(cost)), cost, csc_array(matrix), right, cones, _settings(accuracy)
+    ).solve()
 
 
 @cache
@@ -128,12 +137,12 @@ def _no_quadratic(size: int) -> csc_array:
     return csc_array((size, size))
 
 
-@cache
-def _settings() -> clarabel.DefaultSettings:
+def _settings(accuracy: float) -> clarabel.DefaultSettings:
     """One thread, and without the preparations that only pay for large sparse problems."""
     settings = clarabel.DefaultSettings()
     settings.verbose = False
     settings.max_threads = 1
     settings.presolve_enable = False
     settings.chordal_decomposition_enable = False
+    settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = accuracy
     return settings

@@ -1,0 +1,77 @@
+"""Families of spectra: what they offer for given prices is the best they have."""
+
+import numpy as np
+import pytest
+
+import oed.spectra
+import oed.targets
+from identification.errors import RangeError
+from identification.registry import discover
+from oed.design import design
+from oed.problem import DesignProblem
+from oed.spectra.fir import FirSpectra, FirSpectrum
+from oed.spectra.lines import LineSpectra, LineSpectrum
+from tests.support.random_models import paper_model, random_model
+
+POINTS = np.array([[-0.5], [1.0], [2.5]])
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("kind", discover(oed.spectra))
+def test_no_spectrum_is_worth_more_than_the_best(kind: str, seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    model = random_model(rng)
+    pricing = discover(oed.spectra)[kind].example().pricing(model, POINTS, None, model.structure.sample_time)
+    factor = rng.normal(size=(model.plant_size,) * 2)
+    prices = factor @ factor.T
+    offer = pricing.best(prices, np.zeros(len(POINTS)), (), ())
+    found = dict.fromkeys(range(len(POINTS)), 0.0)
+    for block in offer.blocks:
+        worth = np.einsum("abij,ij->ab", block.information, prices)
+        found[block.point] = max(found[block.point], float(np.linalg.eigvalsh(worth)[-1]))
+    assert np.array(list(found.values())) == pytest.approx(offer.worth, rel=1e-9)
+    for block in pricing.flat():
+        assert np.einsum("abij,ij->", block.information, prices) <= offer.worth[block.point]
+
+
+@pytest.mark.parametrize("kind", discover(oed.targets))
+@pytest.mark.parametrize("family", discover(oed.spectra))
+def test_every_target_is_met_by_every_family(kind: str, family: str) -> None:
+    model = random_model(np.random.default_rng(12))
+    target = discover(oed.targets)[kind].example(model)
+    spectra = discover(oed.spectra)[family].example()
+    result = design(DesignProblem(model, np.linspace(-1, 3, 9)[:, None], (target,), spectra, 500))
+    assert 0 <= result.gap <= 1e-4
+    k = model.plant_size
+    plant = np.linalg.inv(result.expected_covariance[:k, :k])
+    for matrix in target.matrices(model)[:, :k, :k]:
+        assert np.linalg.eigvalsh(plant - matrix)[0] >= -1e-6 * np.linalg.eigvalsh(plant)[-1]
+
+
+def test_fir_density_is_even_and_keeps_its_energy() -> None:
+    spectrum = FirSpectrum(np.array([2.0, 0.6, -0.3]), 0.5)
+    omega = np.linspace(-np.pi, np.pi, 4001) / 0.5
+    density = spectrum.density(omega)
+    assert density == pytest.approx(spectrum.density(-omega))
+    assert np.trapezoid(density, omega * 0.5) / (2 * np.pi) == pytest.approx(spectrum.energy)
+    indices, energies = spectrum.line_energies(64, 0.5)
+    assert energies.sum() == pytest.approx(2.0)
+    assert energies[5] == pytest.approx(2 * spectrum.density(np.array([2 * np.pi * indices[5] / 32]))[0] / 64)
+
+
+def test_lines_need_a_record_that_holds_them() -> None:
+    spectrum = LineSpectrum(2 * np.pi * np.array([3, 7]) / 100, np.array([1.0, 2.0]), np.array([3, 7]), 100)
+    indices, energies = spectrum.line_energies(300, 1.0)
+    assert indices.tolist() == [9, 21]
+    assert energies.tolist() == [1.0, 2.0]
+    with pytest.raises(RangeError, match="multiple of 100"):
+        spectrum.line_energies(150, 1.0)
+
+
+def test_families_that_make_no_sense() -> None:
+    with pytest.raises(RangeError, match="degree"):
+        FirSpectra(-1)
+    with pytest.raises(RangeError, match="no lines"):
+        LineSpectra(1)
+    with pytest.raises(RangeError, match="no line of the record"):
+        LineSpectra(20).pricing(paper_model(), [[1.0]], (0.01, 0.02), 1.0)
