@@ -8,8 +8,12 @@ from identification.errors import MisuseError
 
 @contextmanager
 def field_named(names: Mapping[str, str], default: str | None = None) -> Iterator[None]:
-    """Raise MisuseError again with the name of the field in the request; `default` for arguments not in `names`."""
+    """Raise MisuseError again with the pointer to the field of the request; `default` for arguments not in `names`.
+
+    Names are JSON pointers; an error that has one already keeps it.
+    """
     try:
         yield
     except MisuseError as error:
-        raise MisuseError(str(error), names.get(error.field or "", default)) from error
+        field = error.field or ""
+        raise MisuseError(str(error), field if field.startswith("/") else names.get(field, default)) from error

@@ -3,6 +3,7 @@
 import io
 import math
 import zipfile
+import zlib
 from typing import Any
 
 import numpy as np
@@ -20,7 +21,7 @@ def read(content: bytes) -> Table:
             members = archive.infolist()
             _check(members)
             return named({info.filename.removesuffix(".npy"): _array(archive, info) for info in members})
-    except (zipfile.BadZipFile, EOFError, OSError, NotImplementedError, RuntimeError) as error:
+    except (zipfile.BadZipFile, zlib.error, EOFError, OSError, NotImplementedError, RuntimeError) as error:
         raise FileError(f"the file is not a whole npz file: {str(error)[:200]}") from None
     except FileError:
         raise

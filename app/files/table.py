@@ -36,7 +36,7 @@ class FileError(MisuseError):
     """The file cannot be read as a measurement; the message says what to change."""
 
     def __init__(self, message: str) -> None:
-        super().__init__(message, "file")
+        super().__init__(message, "/file")
 
 
 def named(members: Mapping[str, NDArray[Any]]) -> Table:

@@ -9,6 +9,7 @@ import typer
 from rich.console import Console
 
 from app.errors import ProblemError
+from app.json_pointer import field_pointer
 from app.offline import results
 from app.offline.documents import checked, load, section
 from app.offline.experiments import experiments_of
@@ -36,7 +37,7 @@ def _explained(command: Command) -> Command:
             for problem in error.errors:
                 console.print(f"  {problem.pointer or '/'}: {problem.detail}")
         except MisuseError as error:
-            console.print(f"{file}: {error}" + (f" (/{error.field})" if error.field else ""))
+            console.print(f"{file}: {error}" + (f" ({field_pointer(error.field)})" if error.field else ""))
         else:
             return
         raise typer.Exit(1)

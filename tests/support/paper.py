@@ -87,10 +87,10 @@ def prepared(api: Api) -> tuple[Json, Json]:
     return plant, api.post("/models/stated", stated)
 
 
-def played(point: float, signal: FloatArray, generator: np.random.Generator) -> FloatArray:
-    """The output of the true plant at an operating point, from rest, with the noise of the paper."""
+def played(point: float, signal: FloatArray, generator: np.random.Generator | None) -> FloatArray:
+    """The output of the true plant at an operating point, from rest, with the noise of the paper, if any."""
     zeta = np.array([THETA[0] + THETA[1] * point, THETA[2] + THETA[3] * point, THETA[4] + THETA[5] * point])
-    noise = generator.normal(scale=NOISE_VARIANCE**0.5, size=len(signal))
+    noise = None if generator is None else generator.normal(scale=NOISE_VARIANCE**0.5, size=len(signal))
     return simulate(STRUCTURE, zeta, signal, noise)
 
 

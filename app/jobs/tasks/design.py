@@ -23,19 +23,19 @@ from oed.problem import DesignProblem, Target
 
 KIND = "design"
 FIELDS = {
-    "points": "operatingPoints",
-    "operating_points": "operatingPoints",
-    "excluded_points": "excludedPoints",
-    "energy_caps": "energyCaps",
-    "caps": "energyCaps",
-    "prior_information": "usePriorInformation",
-    "use_prior_information": "usePriorInformation",
-    "band": "band",
-    "samples": "samples",
-    "sample_time": "sampleTimeSeconds",
-    "targets": "targets",
-    "model": "modelId",
-    "degree": "spectrumFamily/degree",
+    "points": "/operatingPoints",
+    "operating_points": "/operatingPoints",
+    "excluded_points": "/excludedPoints",
+    "energy_caps": "/energyCaps",
+    "caps": "/energyCaps",
+    "prior_information": "/usePriorInformation",
+    "use_prior_information": "/usePriorInformation",
+    "band": "/band",
+    "samples": "/samples",
+    "sample_time": "/sampleTimeSeconds",
+    "targets": "/targets",
+    "model": "/modelId",
+    "degree": "/spectrumFamily/degree",
 }
 
 
@@ -46,7 +46,7 @@ def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
     request = DesignRequest.model_validate(payload["request"])
     document = Model.model_validate(payload["model"])
     model = kept_model(document, plant)
-    with field_named(FIELDS, "operatingPoints"):
+    with field_named(FIELDS, "/operatingPoints"):
         problem = stated_problem(request, model, document.covariance is not None)
         found = design(problem, progress=_reporter(context, request.tolerance))
     return TaskResult(_document(payload, model, problem, found))
@@ -79,7 +79,7 @@ def _fitting_targets(request: DesignRequest, model: LpvModel) -> tuple[Target, .
         try:
             target.matrices(model)
         except MisuseError as error:
-            raise MisuseError(str(error), f"targets/{i}/{to_camel(error.field or '')}".rstrip("/")) from error
+            raise MisuseError(str(error), f"/targets/{i}/{to_camel(error.field or '')}".rstrip("/")) from error
         targets.append(target)
     return tuple(targets)
 

@@ -27,7 +27,7 @@ from identification.models import RationalStructure
 from identification.signals import FrequencyResponse, Measurement, TimeRecord
 
 KIND = "identification"
-FIELDS = {"operating_points": "experimentIds", "experiments": "experimentIds", "prior": "priorModelId"}
+FIELDS = {"operating_points": "/experimentIds", "experiments": "/experimentIds", "prior": "/priorModelId"}
 
 
 def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
@@ -36,7 +36,7 @@ def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
     request = ModelRequest.model_validate(payload["request"])
     prior = payload["prior"] and Model.model_validate(payload["prior"])
     experiments = [Experiment.model_validate(given["document"]) for given in payload["experiments"]]
-    with field_named({}, "structure"):
+    with field_named({}, "/structure"):
         structure, dependence = requested_structure(plant, request)
     measured = [
         kept_measurement(experiment, context.arrays.get(given["arrays"]))
@@ -45,7 +45,7 @@ def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
     data = [_fitted_data(request, structure, i, record, context) for i, record in enumerate(measured)]
     local = _local_estimates(request, structure, data, context)
     context.progress(0.8, "the parameter-varying model")
-    with field_named(FIELDS, "experimentIds"):
+    with field_named(FIELDS, "/experimentIds"):
         estimate = request.lpv_estimator.build().estimate(
             structure, dependence, data, local, prior=prior and kept_model(prior, plant)
         )
@@ -60,7 +60,7 @@ def _fitted_data(
         return record
     context.progress(0.05, f"the frequency response of experiment {index + 1}")
     assert request.spectral_estimator is not None, "checked when the job was submitted"
-    with field_named({}, f"experimentIds/{index}"):
+    with field_named({}, f"/experimentIds/{index}"):
         response: FrequencyResponse = request.spectral_estimator.build().estimate(record)
     return response if structure.is_discrete else dataclasses.replace(response, sample_time=None)
 
@@ -76,7 +76,7 @@ def _local_estimates(
             estimates.append(estimator.estimate(structure, measurement))
         except MisuseError as error:
             where = ", ".join(f"{value:g}" for value in measurement.operating_point)
-            raise MisuseError(f"the experiment at {where}: {error}", f"experimentIds/{i}") from error
+            raise MisuseError(f"the experiment at {where}: {error}", f"/experimentIds/{i}") from error
     return tuple(estimates)
 
 

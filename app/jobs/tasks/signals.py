@@ -16,7 +16,7 @@ from oed.realisation.realise import realise
 from oed.realisation.realised_signal import RealisedSignal
 
 KIND = "signals"
-FIELDS = {"amplitude_limit": "amplitudeLimit", "samples": "samples", "periods": "periods", "method": "method"}
+FIELDS = {"amplitude_limit": "/amplitudeLimit", "samples": "/samples", "periods": "/periods", "method": "/method"}
 
 
 def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
