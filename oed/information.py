@@ -53,7 +53,7 @@ def _circle(model: LpvModel, points: ArrayLike, degree: int, sample_time: float)
     """
     if model.structure.is_discrete:
         radius = float(model.structure.radius(model.coefficients(points)).max(initial=0.1))
-        count = degree + np.log(1e-16) / np.log(min(max(radius, 0.1), 1 - 1e-9))
+        count = degree + np.log(1e-14) / np.log(min(max(radius, 0.1), 1 - 1e-9))
     else:
         count = max(CONTINUOUS_GRID, 8 * degree)
     if count > LARGEST_GRID:

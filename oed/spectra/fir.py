@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 from typing import Annotated, ClassVar
 
 import numpy as np
@@ -86,7 +87,7 @@ class FirPricing:
     def flat(self) -> list[Block]:
         """White noise."""
         impulse = np.eye(1, self.moments.shape[1])
-        return self._blocks(dict.fromkeys(range(len(self.moments)), impulse))
+        return [Block(m, impulse, power[None, None]) for m, power in enumerate(self.moments[:, 0])]
 
     def best(
         self, prices: FloatArray, charges: FloatArray, blocks: Sequence[Block], weights: Sequence[FloatArray]
@@ -134,8 +135,8 @@ class FirPricing:
 def _correlations(shapes: FloatArray, sizes: Sequence[int]) -> FloatArray:
     """Σ_s (h_a[s] h_b[s+i] + h_b[s] h_a[s+i])/2, i = 0 … L, of all pairs (a, b) in groups of rows: (pairs, L + 1)."""
     starts = np.cumsum([0, *sizes[:-1]])
-    left = np.concatenate([np.repeat(np.arange(r), r) + s for s, r in zip(starts, sizes, strict=True)])
-    right = np.concatenate([np.tile(np.arange(r), r) + s for s, r in zip(starts, sizes, strict=True)])
+    left = np.concatenate([_pairs(r)[0] + start for start, r in zip(starts, sizes, strict=True)])
+    right = np.concatenate([_pairs(r)[1] + start for start, r in zip(starts, sizes, strict=True)])
     taps = shapes.shape[1]
     transforms = np.fft.rfft(shapes, 2 * taps, axis=1)
     products = transforms.real[left] * transforms.real[right] + transforms.imag[left] * transforms.imag[right]
@@ -150,6 +151,13 @@ def _active(block: Block, weight: FloatArray) -> FloatArray:
 
 
 def _orthonormal(kept: FloatArray, new: FloatArray) -> FloatArray:
-    """The orthonormal rows of `kept`, and what the rows of `new` have beyond them, made orthonormal."""
-    _, values, rows = np.linalg.svd(new - new @ kept.T @ kept, full_matrices=False)
-    return np.asarray(np.linalg.qr(np.vstack([kept, rows[values > 1e-6]]).T)[0].T)
+    """Orthonormal rows that span the orthonormal rows of both."""
+    _, values, rows = np.linalg.svd(np.vstack([kept, new]), full_matrices=False)
+    return np.asarray(rows[values > 1e-6])
+
+
+@cache
+def _pairs(size: int) -> tuple[IntArray, IntArray]:
+    """All pairs (a, b) of `size` rows, b running fastest."""
+    numbers = np.arange(size)
+    return np.repeat(numbers, size), np.tile(numbers, size)
