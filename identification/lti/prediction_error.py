@@ -6,7 +6,7 @@ from typing import Annotated, ClassVar
 import numpy as np
 
 from identification.arrays import FloatArray
-from identification.errors import MisuseError, NotIdentifiableError
+from identification.errors import MisuseError, NotIdentifiableError, RangeError
 from identification.estimates import LocalEstimate
 from identification.initial_conditions import (
     InitialConditions,
@@ -23,6 +23,8 @@ from identification.models import LocalModel, RationalStructure
 from identification.outcome import Outcome, TestResult
 from identification.signals import TimeRecord
 from identification.whiteness import input_independence, whiteness
+
+LARGEST = 1e60
 
 
 @dataclass(frozen=True)
@@ -54,7 +56,7 @@ class PredictionError:
 
         An input that does not excite all parameters gives the outcome "not_identifiable" and infinite variances.
         Raises MisuseError when structure and record do not fit each other, and NotIdentifiableError when the record is
-        shorter than the number of unknowns, or its input or output is zero throughout.
+        shorter than the number of unknowns, or its input or output is zero throughout (RangeError: beyond 1e±60).
         """
         free = free_parameters(structure, self.initial_conditions)
         _require_information(structure, record, free)
@@ -104,6 +106,8 @@ def _require_information(structure: RationalStructure, record: TimeRecord, free:
     for name, signal in (("input", record.input), ("output", record.output)):
         if not np.any(signal):
             raise NotIdentifiableError(f"the {name} is zero throughout, nothing can be learnt from it", name)
+        if not LARGEST**-1 < float(np.abs(signal).max()) < LARGEST:
+            raise RangeError(f"the {name} is too large or too small to be computed with; choose another unit", name)
 
 
 def _excited_directions(structure: RationalStructure, record: TimeRecord, initial: InitialConditions) -> int:

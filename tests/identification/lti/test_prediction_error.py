@@ -5,7 +5,7 @@ import pytest
 from scipy import stats
 from scipy.signal import lfilter
 
-from identification.errors import MisuseError, NotIdentifiableError
+from identification.errors import MisuseError, NotIdentifiableError, RangeError
 from identification.initial_conditions import errors_from
 from identification.least_squares import levenberg_marquardt
 from identification.lti.prediction_error import PredictionError
@@ -145,9 +145,9 @@ def test_stated_covariance_is_true_and_a_wrong_one_is_caught():
 
 def test_units_of_the_signals_do_not_matter():
     record = record_of(SECOND, ZETA, deviation=0.3)
-    scaled = TimeRecord(1e-9 * record.input, 1e100 * record.output, 1.0, (0.0,))
+    scaled = TimeRecord(1e-9 * record.input, 1e50 * record.output, 1.0, (0.0,))
     one, other = PredictionError().estimate(SECOND, record), PredictionError().estimate(SECOND, scaled)
-    units = np.array([1, 1, 1e109, 1e109, 1, 1])
+    units = np.array([1, 1, 1e59, 1e59, 1, 1])
     assert np.allclose(other.model.zeta / units, one.model.zeta, rtol=1e-6)
     assert np.allclose(other.model.covariance / np.outer(units, units), one.model.covariance, rtol=1e-4)
     assert np.isclose(other.fit_percent, one.fit_percent)
@@ -205,6 +205,12 @@ def test_pure_noise_model_and_pure_gain():
 def test_records_without_information(u, y, named):
     with pytest.raises(NotIdentifiableError, match=named):
         PredictionError().estimate(SECOND, TimeRecord(u, y, 1.0, (0.0,)))
+
+
+def test_signals_beyond_computation():
+    record = record_of(SECOND, ZETA, deviation=0.3)
+    with pytest.raises(RangeError, match="unit"):
+        PredictionError().estimate(SECOND, TimeRecord(1e-150 * record.input, record.output, 1.0, (0.0,)))
 
 
 def test_misuse():
