@@ -57,7 +57,7 @@ def _realised(
     )
     if signal.samples > MOST_SAMPLES:
         raise RangeError(
-            f"the signal would need {signal.samples} samples, at most {MOST_SAMPLES} are made; raise the amplitude limit",
+            f"the signal would need {signal.samples} samples, at most {MOST_SAMPLES} are made; raise the limit",
             "amplitude_limit",
         )
     return signal
