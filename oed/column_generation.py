@@ -72,8 +72,10 @@ def least_energy(
     best = _Bounds(np.inf, 0.0, np.zeros_like(targets), np.zeros(len(caps)))
     active = np.arange(min(len(targets), ACTIVE_TARGETS))
     for iteration in range(1, max_iterations + 1):
-        master = solve_master(start, targets[active], caps, accuracy=max(1e-8, 0.01 ** (iteration + 1)))
-        offer = pricing.best(master.prices.sum(axis=0), 1 + master.cap_prices, start, master.weights)
+        accuracy = max(1e-8, 0.01 ** (iteration + 1))
+        master = solve_master(start, targets[active], caps, accuracy=accuracy)
+        weights = [weight * (np.trace(weight) > 100 * accuracy) for weight in master.weights]
+        offer = pricing.best(master.prices.sum(axis=0), 1 + master.cap_prices, start, weights)
         best = best.improved(start, master, offer.worth, targets, active, caps)
         if progress is not None:
             progress(iteration, best.gap)
