@@ -40,7 +40,7 @@ class DiscreteTimeStructure(CamelModel):
     sample_time_seconds: SampleTime = Field(description="sample time of records and model")
     na: Order = Field(description="order of A = 1 + a1 q + …, q the delay by one sample")
     nb: Order = Field(description="order of B = q^nk (b0 + b1 q + … + b_nb q^nb)")
-    nk: Order = Field(default=0, description="samples of delay")
+    nk: Annotated[Integer, Field(ge=0, le=10_000)] = Field(default=0, description="samples of delay")
     nc: Order = Field(default=0, description="order of C = 1 + c1 q + …")
     nd: Order = Field(default=0, description="order of D = 1 + d1 q + …")
     delay: bool = Field(default=False, description="estimate a further delay tau in seconds")

@@ -108,3 +108,11 @@ def test_exponents_without_a_point_are_numbers(tmp_path: Path, designing: dict[s
     file.write_text(text)
     code, output = run("design", file)
     assert code == 0, output
+
+
+@pytest.mark.parametrize(("command", "result"), [("identify", "model.json"), ("design", "design.json")])
+def test_the_examples_run(tmp_path: Path, repository: Path, command: str, result: str) -> None:
+    file = repository / "examples" / f"{command}.yaml"
+    done = RUNNER.invoke(application, [command, str(file), "--output", str(tmp_path)])
+    assert done.exit_code == 0, done.stderr
+    assert json.loads((tmp_path / result).read_text())["outcome"]["status"] == "converged"
