@@ -17,6 +17,7 @@ from oed.spectra.family import Block, Pricing
 
 Progress = Callable[[int, float], None]
 ACTIVE_TARGETS = 12
+MOST_AT_START = 200
 NEGLIGIBLE = 1e-3
 CAP_SLACK = 1e-6
 FEASIBLE = 1e-7
@@ -63,7 +64,8 @@ def least_energy(
     judges the gap: it may exceed `tolerance` after `max_iterations`. Good conditioning is the caller's: the information
     of flat spectra should be of the order of the unit matrix.
     """
-    start = [*pricing.flat(), *blocks]
+    flat = pricing.flat()
+    start = [*flat[:: 1 + len(flat) // MOST_AT_START], *blocks]
     if np.isfinite(caps).any():
         found = _within_caps(pricing, targets, caps, start)
         if isinstance(found, Shortfall):
@@ -167,7 +169,7 @@ def _within_caps(
         charges = master.cap_prices + 1e-9 * master.cap_prices.max()
         offer = pricing.best(master.prices.sum(axis=0), charges, blocks, master.weights)
         if master.shortfall <= FEASIBLE:
-            return [*pricing.flat(), *offer.blocks]
+            return [*blocks, *offer.blocks]
         least = float(np.einsum("jab,jab", master.prices, targets) - limits @ np.maximum(offer.worth, 0.0))
         if least > FEASIBLE and master.shortfall - least <= 1e-3 * master.shortfall:
             return Shortfall(least)

@@ -12,7 +12,7 @@ from identification.arrays import FloatArray, IntArray
 from identification.errors import RangeError
 from identification.models import LpvModel
 from oed.information import sensitivity_moments
-from oed.spectra.family import NEARLY, Block, Offer
+from oed.spectra.family import NEARLY, Block, Offer, foremost
 
 MOST_NEW = 3
 NEGLIGIBLE = 1e-5
@@ -102,7 +102,7 @@ class FirPricing:
             kept = _active(block, weight)
             if len(kept):
                 shapes[block.point] = _orthonormal(shapes[block.point], kept) if block.point in shapes else kept
-        for m in np.flatnonzero(worth > NEARLY * charges).tolist():
+        for m in foremost(worth > NEARLY * charges, worth - charges).tolist():
             new = vectors[m][:, values[m] > NEARLY * max(charges[m], worth[m])][:, -MOST_NEW:].T
             shapes[m] = _orthonormal(shapes[m], new) if m in shapes else new
         return Offer(worth, self._blocks(shapes))
