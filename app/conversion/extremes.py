@@ -3,11 +3,15 @@
 import logging
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from identification.errors import RangeError
 from identification.models import LpvModel
+
+Number = TypeVar("Number", np.float64, np.complex128)
 
 logger = logging.getLogger(__name__)
 
@@ -29,3 +33,12 @@ def require_finite(model: LpvModel) -> None:
     """Raises RangeError when an estimate has parameters that are no numbers."""
     if not (np.isfinite(model.theta).all() and np.isfinite(model.noise_variance)):
         raise RangeError("the estimate has no finite parameters; choose units in which the data lie nearer to one")
+
+
+def finite(values: NDArray[Number], what: str) -> NDArray[Number]:
+    """The values themselves; raises RangeError unless all are finite."""
+    if not np.isfinite(values).all():
+        raise RangeError(
+            f"the {what} leave the range of numbers somewhere; choose units in which they lie nearer to one"
+        )
+    return values
