@@ -14,6 +14,7 @@ from identification.models import LpvModel
 from oed.information import sensitivity_moments
 from oed.spectra.family import NEARLY, Block, Offer, foremost
 
+LARGEST_DEGREE = 1000
 MOST_NEW = 3
 NEGLIGIBLE = 1e-5
 
@@ -60,8 +61,8 @@ class FirSpectra:
     degree: Annotated[int, "degree L of the FIR filter"]
 
     def __post_init__(self) -> None:
-        if self.degree < 0:
-            raise RangeError(f"the degree is {self.degree}; it must be zero or more", "degree")
+        if not 0 <= self.degree <= LARGEST_DEGREE:
+            raise RangeError(f"the degree is {self.degree}; it must lie between 0 and {LARGEST_DEGREE}", "degree")
 
     def pricing(
         self, model: LpvModel, points: ArrayLike, band: tuple[float, float] | None, sample_time: float

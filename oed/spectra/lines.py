@@ -13,6 +13,8 @@ from identification.models import LpvModel
 from oed.information import sensitivity
 from oed.spectra.family import NEARLY, Block, Offer, foremost
 
+MOST_SENSITIVITIES = 2**26
+
 
 @dataclass(frozen=True, eq=False)
 class LineSpectrum:
@@ -68,6 +70,12 @@ class LineSpectra:
         if len(indices) == 0:
             raise RangeError("no line of the record lies in the frequency band; widen it or use more samples", "band")
         frequencies = np.asarray(indices * line_spacing, dtype=np.float64)
+        if len(frequencies) * np.shape(points)[0] * model.plant_size > MOST_SENSITIVITIES:
+            raise RangeError(
+                f"{len(frequencies)} lines at {np.shape(points)[0]} operating points are more than fits into memory;"
+                " use fewer samples per period, a narrower band, or fewer operating points",
+                "samples",
+            )
         return LinePricing(frequencies, indices, self.samples, sensitivity(model, points, frequencies))
 
     @classmethod
