@@ -27,7 +27,7 @@ def described(request: PlantRequest) -> dict[str, Any]:
         **request.model_dump(by_alias=True, mode="json"),
         "softwareVersion": __version__,
         "parameterNames": list(dependence.parameter_names(structure.coefficient_names)),
-        "neededOperatingPoints": max(dependence.sizes),
+        "neededOperatingPoints": dependence.needed_operating_points,
     }
 
 
