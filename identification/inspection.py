@@ -9,7 +9,7 @@ from scipy import stats
 
 from identification.arrays import ComplexArray, FloatArray
 from identification.errors import RangeError
-from identification.signals import FrequencyResponse, TimeRecord
+from identification.signals import FrequencyResponse, TimeRecord, require_one_channel
 from identification.spectral.periodic_average import excited_lines, transient_periods
 
 MOST_LINES_LISTED = 1000
@@ -60,7 +60,8 @@ def inspect(measurement: TimeRecord | FrequencyResponse) -> RecordInspection | R
     """What a measurement shows, with warnings that say what to change.
 
     The period is stated or found by exact repetition of the input; the noise is what differs between steady periods.
-    Raises RangeError for records or responses of zeros, which cannot be a measurement.
+    Raises RangeError for records or responses of zeros, which cannot be a measurement, and MisuseError for responses
+    with several inputs or outputs, which are inspected one channel at a time.
     """
     if isinstance(measurement, TimeRecord):
         return _inspect_record(measurement)
@@ -219,6 +220,7 @@ def _with_warnings(result: RecordInspection, record: TimeRecord) -> RecordInspec
 
 
 def _inspect_response(data: FrequencyResponse) -> ResponseInspection:
+    require_one_channel(data)
     if not data.response.any():
         raise RangeError("the response is zero at every frequency; check the measurement", "response")
     size = abs(data.response)
