@@ -50,6 +50,17 @@ class PoleRegion(ABC):
         lower, upper = self.real_interval
         return not lower < upper
 
+    @property
+    def depth(self) -> float:
+        """−min f(x) over the real axis: how far inside the deepest point lies; infinite for unbounded regions."""
+        from scipy.optimize import minimize_scalar
+
+        lower, upper = self.real_interval
+        if not np.isfinite(upper - lower):
+            return np.inf
+        found = minimize_scalar(lambda x: float(self.excess(x)), bounds=(lower, upper), method="bounded")
+        return -float(found.fun)
+
     def require_points(self) -> None:
         """Raises RangeError when the region is empty, with the numbers that leave nothing."""
         if self.empty:
