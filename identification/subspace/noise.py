@@ -1,0 +1,104 @@
+"""The noise of a frequency response as the subspace methods use it: weights of lines, and K."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal, Self
+
+import numpy as np
+from scipy.linalg import solve_triangular
+
+from identification.arrays import ComplexArray, FloatArray
+from identification.errors import MisuseError
+from identification.signals import FrequencyResponse
+from identification.subspace.polynomials import OrthonormalPolynomials
+
+Weighting = Literal["automatic", "variance", "equal", "none"]
+
+
+@dataclass(frozen=True, eq=False)
+class Noise:
+    """`weights` (F, n_y, n_u), the inverse standard deviations, and `covariance` (F, m, m), m = n_y n_u, or None."""
+
+    weights: FloatArray
+    covariance: ComplexArray | None = None
+
+    @classmethod
+    def of(cls, data: FrequencyResponse, weighting: Weighting) -> Self:
+        """That of a measurement; raises MisuseError where "variance" is asked for and there is none."""
+        if weighting == "variance" and data.variance is None:
+            raise MisuseError(
+                "the frequency response carries no variance; give one or use the weighting 'equal'", "weighting"
+            )
+        shape = data.matrices.shape
+        if weighting in ("equal", "none") or data.variance is None:
+            return cls(np.ones(shape))
+        # Only ratios matter: scaled so that squares neither overflow nor vanish.
+        scale = float(np.median(data.variance))
+        covariance = None if data.covariance is None else data.covariance / scale
+        return cls(np.sqrt(scale / data.variance.reshape(shape)), covariance)
+
+    @cached_property
+    def same_for_inputs(self) -> bool:
+        """Whether one weight a line and output does for all inputs."""
+        return bool(np.all(self.weights == self.weights[..., :1]))
+
+    def whiten(self, entries: ComplexArray) -> ComplexArray:
+        """L_k⁻¹ x_k with R_k = L_k L_kᴴ, for x (F, m, c) and m = n_y n_u correlated entries."""
+        assert self.covariance is not None
+        return np.linalg.solve(np.linalg.cholesky(self.covariance), entries)
+
+    def factors(self, polynomials: OrthonormalPolynomials) -> FloatArray | None:
+        """K, lower triangular, (n_y, q, q) one an output, or (n_y q, n_y q) for correlated outputs; None for K = I.
+
+            K Kᵀ = α Re Σ_k R_k ⊗ φ(z_k) φ(z_k)ᴴ,   R_k = Σ_j E n_kj n_kjᴴ over the inputs j     [Akcay2008, (3)]
+
+        With φ_i in place of z^i on both sides the singular values and the subspace stay the same.
+        """
+        if self.covariance is None and np.ptp(self.weights) == 0:
+            return None
+        values = polynomials.values
+        if self.covariance is None:
+            variances = np.sum(self.weights**-2.0, axis=2).T
+            scaled = values * np.sqrt(variances)[:, None, :]
+            return _cholesky(_gram(scaled))
+        size, (count, n_y, n_u) = len(values), self.weights.shape
+        between = np.einsum("kajbj->kab", self.covariance.reshape(count, n_y, n_u, n_y, n_u))
+        pairs = (values[:, None, :] * values.conj()).reshape(-1, count)
+        gram = np.real(pairs @ between.reshape(count, -1)).reshape(size, size, n_y, n_y)
+        return _cholesky(gram.transpose(2, 0, 3, 1).reshape(n_y * size, n_y * size) / count)
+
+
+def divide(factors: FloatArray | None, rows: FloatArray) -> FloatArray:
+    """K⁻¹ X for X (n_y, q, c)."""
+    if factors is None:
+        return rows
+    if factors.ndim == 3:
+        return np.stack([solve_triangular(k, x, lower=True) for k, x in zip(factors, rows, strict=True)])
+    flat = rows.reshape(len(factors), -1)
+    return np.asarray(solve_triangular(factors, flat, lower=True)).reshape(rows.shape)
+
+
+def multiply(factors: FloatArray | None, rows: FloatArray) -> FloatArray:
+    """K X for X (n_y, q, c)."""
+    if factors is None:
+        return rows
+    if factors.ndim == 3:
+        return np.asarray(factors @ rows)
+    return np.asarray(factors @ rows.reshape(len(factors), -1)).reshape(rows.shape)
+
+
+def _gram(scaled: ComplexArray) -> FloatArray:
+    """Re X Xᴴ / F for X (…, q, F)."""
+    real = scaled.view(np.float64)
+    return np.asarray(real @ np.swapaxes(real, -1, -2) / scaled.shape[-1])
+
+
+def _cholesky(gram: FloatArray) -> FloatArray:
+    try:
+        return np.linalg.cholesky(gram)
+    except np.linalg.LinAlgError:
+        raise MisuseError(
+            "the variances differ so much that few lines carry all weight; leave out lines that are known too badly,"
+            " use fewer block rows or the weighting 'equal'",
+            "variance",
+        ) from None

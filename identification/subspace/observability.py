@@ -1,0 +1,101 @@
+"""The range of the extended observability matrix, and A and C from it."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import solve_triangular
+
+from identification.arrays import ComplexArray, FloatArray
+from identification.errors import NotIdentifiableError
+from identification.subspace.dominant import dominant_left_vectors
+from identification.subspace.noise import Noise, divide, multiply
+from identification.subspace.polynomials import OrthonormalPolynomials
+from identification.subspace.transition import Stability, Transition, projected, transition_matrix
+
+
+@dataclass(frozen=True, eq=False)
+class ObservabilityRange:
+    """Estimated columns of an extended observability matrix, most important first.
+
+        O_i = C φ_i(A),  i = 0 … q − 1,   φ_i A = Σ_j h_ji φ_j,  φ_0 = 1
+
+    With φ_i = z^i it is [C; CA; … ; CA^{q−1}] [Akcay2008, Problem Formulation]. `columns` (n_y, q, r), r the highest
+    order that the data show; `singular_values`; `shift` (q, q) holds the h_ji, ‖shift‖ ≤ 1.
+    """
+
+    columns: FloatArray
+    singular_values: FloatArray
+    shift: FloatArray
+
+    @property
+    def highest_order(self) -> int:
+        """The number of columns found."""
+        return self.columns.shape[2]
+
+    def system(
+        self, order: int, transition: Transition = "least_squares", stability: Stability = "none"
+    ) -> tuple[FloatArray, FloatArray]:
+        """A (n, n) and C (n_y, n) of order n.
+
+        `stability` "maciejowski" leaves out what the last block row is shifted to, so that A is similar to a
+        compression of the contraction `shift` and stable, at the price of an error; "projection" moves unstable
+        eigenvalues inside [Akcay2008, Guaranteeing stability]. Raises NotIdentifiableError where the data have a
+        lower order.
+        """
+        if order > self.highest_order:
+            raise NotIdentifiableError(
+                f"the data show order {self.highest_order} only, {order} was asked for; choose a lower order", "order"
+            )
+        o = self.columns[:, :, :order]
+        shifted = np.einsum("ji,pjn->pin", self.shift, o)
+        kept = slice(None) if stability == "maciejowski" else slice(-1)
+        method = "least_squares" if stability == "maciejowski" else transition
+        a = transition_matrix(o[:, kept].reshape(-1, order), shifted[:, kept].reshape(-1, order), method)
+        return projected(a) if stability != "none" else a, o[:, 0]
+
+
+def observability_range(
+    z: ComplexArray, response: ComplexArray, noise: Noise, block_rows: int, count: int, unweighted: bool = False
+) -> ObservabilityRange:
+    """The first `count` columns from Ĝ (F, n_y, n_u) at arbitrary distinct z (F,) on the unit circle.
+
+        [Re W Im W; Re G Im G] = [R_11 0; R_21 R_22] Qᵀ,   K⁻¹ R_22 = U Σ Vᵀ,   O = K U_s   [Akcay2008, Algorithm 2]
+
+    R_22 R_22ᵀ is that of the rows φ_i(z_k) Ĝ_k after the projection on the rows φ_i(z_k) I has been subtracted; no
+    factorisation of all rows is needed. `unweighted` takes K = I with the powers z^i.
+    """
+    polynomials = OrthonormalPolynomials.on(z, block_rows)
+    n_y = response.shape[1]
+    factors = _powers(polynomials.shift, n_y) if unweighted else noise.factors(polynomials)
+    rows = _projected_rows(polynomials.values, factors, response)
+    vectors, sizes = dominant_left_vectors(rows, min(count, len(rows)))
+    columns = multiply(factors, vectors.reshape(n_y, block_rows, -1))
+    return ObservabilityRange(columns, sizes, polynomials.shift)
+
+
+def _projected_rows(values: ComplexArray, factors: FloatArray | None, response: ComplexArray) -> FloatArray:
+    """K⁻¹ 𝒢 𝒲^⊥ / √F, (n_y q, 2 n_u F), for the polynomials (q, F) and Ĝ (F, n_y, n_u)."""
+    size, count = values.shape
+    transposed = np.ascontiguousarray(np.moveaxis(response, 0, 2))[:, None]
+    correlated = factors is not None and factors.ndim == 2
+    weighted = values[None]
+    if factors is not None and not correlated:
+        stacked = np.broadcast_to(values.view(np.float64), (len(factors), size, 2 * count))
+        weighted = divide(factors, stacked).view(np.complex128)
+    rows = (weighted[:, :, None, :] * transposed).view(np.float64)
+    if correlated:
+        rows = np.ascontiguousarray(divide(factors, rows.reshape(*rows.shape[:2], -1))).reshape(rows.shape)
+    flat, basis = rows.reshape(-1, 2 * count), values.view(np.float64)
+    flat -= (flat @ basis.T / count) @ basis
+    return rows.reshape(-1, response.shape[2] * 2 * count) / np.sqrt(count)
+
+
+def _powers(shift: FloatArray, outputs: int) -> FloatArray:
+    """K that stands for K = I with powers in place of polynomials: z^i = Σ_j L_ij φ_j, K = L⁻¹, (n_y, q, q)."""
+    size = len(shift)
+    lower = np.zeros((size, size))
+    lower[0, 0] = 1.0
+    for i in range(1, size):
+        lower[i] = shift @ lower[i - 1]
+    inverse = solve_triangular(lower, np.eye(size), lower=True)
+    return np.broadcast_to(inverse, (outputs, size, size))
