@@ -11,7 +11,7 @@ from identification.arrays import ComplexArray, FloatArray
 
 
 def integrated_response(channel: OpenChannel, positions: FloatArray, omega: float) -> ComplexArray:
-    """[G_e, G_s] at positions (X,) and one ω in rad/s, as (X, 2), by integrating the linear equations along x.
+    """[G_e, G_s] at rising positions (X,) and one ω in rad/s, as (X, 2), by integrating the linear equations along x.
 
         d/dx [q; h] = [0, −B₀ s; −(s − β)/((c₀² − V₀²) B₀), (2V₀B₀ s + γ)/((c₀² − V₀²) B₀)] [q; h],   s = jω
 
