@@ -51,4 +51,4 @@ IdempotencyKey = Annotated[
     ),
 ]
 Limit = Annotated[int, Query(ge=1, le=500, description="most items in one answer")]
-Cursor = Annotated[str | None, Query(max_length=64, description="nextCursor of the answer to be continued")]
+Cursor = Annotated[str | None, Query(pattern=r"^[0-9a-f]{32}$", description="nextCursor of the answer to be continued")]

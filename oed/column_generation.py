@@ -17,6 +17,7 @@ from oed.spectra.family import Block, Pricing
 
 Progress = Callable[[int, float], None]
 ACTIVE_TARGETS = 12
+MOST_AT_START = 200
 NEGLIGIBLE = 1e-3
 CAP_SLACK = 1e-6
 FEASIBLE = 1e-7
@@ -63,7 +64,8 @@ def least_energy(
     judges the gap: it may exceed `tolerance` after `max_iterations`. Good conditioning is the caller's: the information
     of flat spectra should be of the order of the unit matrix.
     """
-    start = [*pricing.flat(), *blocks]
+    flat = pricing.flat()
+    start = [*flat[:: 1 + len(flat) // MOST_AT_START], *blocks]
     if np.isfinite(caps).any():
         found = _within_caps(pricing, targets, caps, start)
         if isinstance(found, Shortfall):
@@ -72,8 +74,10 @@ def least_energy(
     best = _Bounds(np.inf, 0.0, np.zeros_like(targets), np.zeros(len(caps)))
     active = np.arange(min(len(targets), ACTIVE_TARGETS))
     for iteration in range(1, max_iterations + 1):
-        master = solve_master(start, targets[active], caps, accuracy=max(1e-8, 0.01 ** (iteration + 1)))
-        offer = pricing.best(master.prices.sum(axis=0), 1 + master.cap_prices, start, master.weights)
+        accuracy = max(1e-8, 0.01 ** (iteration + 1))
+        master = solve_master(start, targets[active], caps, accuracy=accuracy)
+        weights = [weight * (np.trace(weight) > 100 * accuracy) for weight in master.weights]
+        offer = pricing.best(master.prices.sum(axis=0), 1 + master.cap_prices, start, weights)
         best = best.improved(start, master, offer.worth, targets, active, caps)
         if progress is not None:
             progress(iteration, best.gap)
@@ -165,7 +169,7 @@ def _within_caps(
         charges = master.cap_prices + 1e-9 * master.cap_prices.max()
         offer = pricing.best(master.prices.sum(axis=0), charges, blocks, master.weights)
         if master.shortfall <= FEASIBLE:
-            return [*pricing.flat(), *offer.blocks]
+            return [*blocks, *offer.blocks]
         least = float(np.einsum("jab,jab", master.prices, targets) - limits @ np.maximum(offer.worth, 0.0))
         if least > FEASIBLE and master.shortfall - least <= 1e-3 * master.shortfall:
             return Shortfall(least)

@@ -9,8 +9,11 @@ from pydantic.alias_generators import to_camel
 Double = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 """A finite number; strings and booleans are refused."""
 
-Integer = Annotated[int, Field(strict=True)]
-"""A whole number; strings and booleans are refused."""
+LARGEST_INTEGER = 2**53 - 1
+Integer = Annotated[
+    int, Field(strict=True, ge=-LARGEST_INTEGER, le=LARGEST_INTEGER, json_schema_extra={"format": "int64"})
+]
+"""A whole number that every JSON reader keeps exactly; strings and booleans are refused."""
 
 Timestamp = Annotated[datetime, Field(strict=False)]
 """A moment in UTC, also read back from its ISO 8601 text."""

@@ -38,6 +38,8 @@ def payload(plant: Plant, model: Model, request: DesignRequest) -> dict[str, Any
         points = candidate_points(request, searched.dependence)
     with pointing(POINTERS, default="/energyCaps"):
         energy_caps(request, points, searched.dependence)
+    if not model.noise_variance > 0:
+        raise UnprocessableError.at("/modelId", "the model has no noise, so any experiment would be accurate enough")
     if not known.structure.is_discrete and request.sample_time_seconds is None:
         raise UnprocessableError.at("/sampleTimeSeconds", "needed for a plant in continuous time")
     if request.use_prior_information and model.covariance is None:

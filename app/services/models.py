@@ -5,6 +5,7 @@ from typing import Any
 
 from app import __version__
 from app.container import Container
+from app.conversion.extremes import within_doubles
 from app.conversion.misuse import pointing
 from app.conversion.models import accuracy_documents, check_covariance, range_documents, requested_structure
 from app.conversion.plants import lpv_model, structure_and_dependence
@@ -67,7 +68,8 @@ def stated(plant: Plant, request: StatedModelRequest) -> dict[str, Any]:
     with pointing(STATED_POINTERS, default=""):
         model = lpv_model(structure, dependence, request.theta, request.covariance, request.noise_variance)
         check_covariance(model.covariance)
-    over_range = range_documents(model)
+    with pointing({}, default="/theta"), within_doubles():
+        over_range = range_documents(model)
     if not over_range["stable"]:
         raise UnprocessableError.at("/theta", unstable_advice(structure, model))
     return {

@@ -3,6 +3,7 @@
 from typing import Any
 
 from app.container import Container
+from app.conversion.signals import lengths
 from app.errors import UnprocessableError
 from app.jobs.records import JobRecord
 from app.schemas.designs import Design
@@ -27,8 +28,13 @@ def payload(design: Design, request: SignalsRequest) -> dict[str, Any]:
     """What the task gets; raises UnprocessableError when there is nothing to play or too much."""
     if not design.experiments:
         raise UnprocessableError("the design has no experiments: " + (design.outcome.advice or "none are needed"))
-    if request.samples is not None and request.samples * (request.periods or 1) > MOST_SAMPLES:
-        raise UnprocessableError.at("/samples", f"at most {MOST_SAMPLES} samples are made for one signal")
+    for experiment in design.experiments:
+        period, periods = lengths(design, experiment, request)
+        if period * periods > MOST_SAMPLES:
+            detail = (
+                f"{period} samples in {periods} periods are too many; at most {MOST_SAMPLES} are made for one signal"
+            )
+            raise UnprocessableError.at("/samples", detail)
     if request.method == "filtered_noise" and any(e.spectrum.kind != "fir" for e in design.experiments):
         raise UnprocessableError.at("/method", "noise has no lines; play a design with line spectra as a multisine")
     return {"design": _json(design), "request": _json(request)}

@@ -9,6 +9,7 @@ from pydantic.alias_generators import to_camel
 from app import __version__
 from app.arrays import finite_list_or_none, finite_or_none
 from app.conversion.designs import candidate_points, energy_caps, prior_information, searched_model
+from app.conversion.extremes import within_doubles
 from app.conversion.fields import field_named
 from app.conversion.models import kept_model, outcome_document, standard_deviations
 from app.conversion.spectra import curve, spectrum_document
@@ -46,7 +47,7 @@ def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
     request = DesignRequest.model_validate(payload["request"])
     document = Model.model_validate(payload["model"])
     model = kept_model(document, plant)
-    with field_named(FIELDS, "/operatingPoints"):
+    with field_named(FIELDS, "/operatingPoints"), within_doubles():
         problem = stated_problem(request, model, document.covariance is not None)
         found = design(problem, progress=_reporter(context, request.tolerance))
     return TaskResult(_document(payload, model, problem, found))
@@ -77,7 +78,8 @@ def _fitting_targets(request: DesignRequest, model: LpvModel) -> tuple[Target, .
     for i, given in enumerate(request.targets):
         target: Target = given.build()
         try:
-            target.matrices(model)
+            with within_doubles():
+                target.matrices(model)
         except MisuseError as error:
             raise MisuseError(str(error), f"/targets/{i}/{to_camel(error.field or '')}".rstrip("/")) from error
         targets.append(target)

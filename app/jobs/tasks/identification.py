@@ -6,6 +6,7 @@ from typing import Any
 
 from app import __version__
 from app.conversion.experiments import kept_measurement
+from app.conversion.extremes import require_finite, within_doubles
 from app.conversion.fields import field_named
 from app.conversion.models import (
     accuracy_documents,
@@ -43,12 +44,13 @@ def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
         for experiment, given in zip(experiments, payload["experiments"], strict=True)
     ]
     data = [_fitted_data(request, structure, i, record, context) for i, record in enumerate(measured)]
-    local = _local_estimates(request, structure, data, context)
-    context.progress(0.8, "the parameter-varying model")
-    with field_named(FIELDS, "/experimentIds"):
-        estimate = request.lpv_estimator.build().estimate(
+    with field_named(FIELDS, "/experimentIds"), within_doubles():
+        local = _local_estimates(request, structure, data, context)
+        context.progress(0.8, "the parameter-varying model")
+        estimate: LpvEstimate = request.lpv_estimator.build().estimate(
             structure, dependence, data, local, prior=prior and kept_model(prior, plant)
         )
+        require_finite(estimate.model)
     return TaskResult(_document(plant, request, estimate, experiments, data, local))
 
 
@@ -60,7 +62,7 @@ def _fitted_data(
         return record
     context.progress(0.05, f"the frequency response of experiment {index + 1}")
     assert request.spectral_estimator is not None, "checked when the job was submitted"
-    with field_named({}, f"/experimentIds/{index}"):
+    with field_named({}, f"/experimentIds/{index}"), within_doubles():
         response: FrequencyResponse = request.spectral_estimator.build().estimate(record)
     return response if structure.is_discrete else dataclasses.replace(response, sample_time=None)
 
