@@ -11,14 +11,19 @@ BLOCK = 1 << 20  # complex numbers held at a time
 
 
 def resolvent(a: FloatArray, b: FloatArray, c: FloatArray, z: ComplexArray) -> ComplexArray:
-    """C (zI − A)⁻¹ B for z (F,), as (…, F, n_y, n_u).
+    """C (zI − A)⁻¹ B for z (F,), as (…, F, n_y, n_u); see `resolvent_by_entry`."""
+    return np.ascontiguousarray(np.moveaxis(resolvent_by_entry(a, b, c, z), -1, -3))
+
+
+def resolvent_by_entry(a: FloatArray, b: FloatArray, c: FloatArray, z: ComplexArray) -> ComplexArray:
+    """C (zI − A)⁻¹ B for z (F,), as (…, n_y, n_u, F).
 
     By partial fractions where the eigenvectors are well conditioned, all lines in one matrix product, and by back
     substitution in Schur form otherwise. `b` and `c` may lack the leading axes of `a` (…, n, n).
     Raises RangeError where a z is an eigenvalue of A.
     """
     n, batch = a.shape[-1], a.shape[:-2]
-    result = np.zeros((*batch, len(z), c.shape[-2], b.shape[-1]), dtype=np.complex128)
+    result = np.zeros((*batch, c.shape[-2], b.shape[-1], len(z)), dtype=np.complex128)
     if n == 0:
         return result
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
@@ -31,28 +36,28 @@ def resolvent(a: FloatArray, b: FloatArray, c: FloatArray, z: ComplexArray) -> C
 
 def _one(a: FloatArray, b: FloatArray, c: FloatArray, z: ComplexArray) -> ComplexArray:
     poles, vectors = np.linalg.eig(a)
-    result = np.empty((len(z), c.shape[0] * b.shape[1]), dtype=np.complex128)
+    result = np.empty((c.shape[0] * b.shape[1], len(z)), dtype=np.complex128)
     modal = np.linalg.cond(vectors) < WELL_CONDITIONED
     if modal:
         left, right = c @ vectors, np.linalg.solve(vectors, b.astype(np.complex128))
-        residues = (left[:, None, :] * right.T[None]).reshape(-1, len(a)).T
+        residues = (left[:, None, :] * right.T[None]).reshape(-1, len(a))
     else:
         triangle, basis = schur(a, output="complex")
     step = max(BLOCK // (len(a) * (1 if modal else b.shape[1])), 1)
     for first in range(0, len(z), step):
         block = z[first : first + step]
         if modal:
-            result[first : first + step] = (1 / (block[:, None] - poles)) @ residues
+            result[:, first : first + step] = residues @ (1 / (block - poles[:, None]))
         else:
-            result[first : first + step] = _substituted(triangle, basis.conj().T @ b, c @ basis, block)
-    return result.reshape(len(z), c.shape[0], b.shape[1])
+            result[:, first : first + step] = _substituted(triangle, basis.conj().T @ b, c @ basis, block)
+    return result.reshape(c.shape[0], b.shape[1], len(z))
 
 
 def _substituted(triangle: ComplexArray, b: ComplexArray, c: ComplexArray, z: ComplexArray) -> ComplexArray:
-    """C (zI − R)⁻¹ B for an upper triangular R, state by state for all lines, as (F, n_y n_u)."""
+    """C (zI − R)⁻¹ B for an upper triangular R, state by state for all lines, as (n_y n_u, F)."""
     n, n_u = b.shape
     x = np.empty((n, n_u * len(z)), dtype=np.complex128)
     for i in reversed(range(n)):
         right = triangle[i, i + 1 :] @ x[i + 1 :]
         x[i] = ((b[i][:, None] + right.reshape(n_u, -1)) / (z - triangle[i, i])).ravel()
-    return np.asarray((c @ x).reshape(len(c), n_u, -1).transpose(2, 0, 1).reshape(len(z), -1))
+    return np.asarray((c @ x).reshape(len(c) * n_u, -1))

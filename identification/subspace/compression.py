@@ -7,12 +7,14 @@ from scipy.linalg import lapack
 
 from identification.arrays import FloatArray
 
-BLOCK = 1 << 19  # numbers factorised at a time
+BLOCK = 1 << 17  # numbers factorised at a time
 
 
-def triangle(columns: Iterable[FloatArray]) -> FloatArray:
-    """R (C, C) with RᵀR = Σ X Xᵀ for pieces X (C, N) of the transposed equations, as a QR factorisation gives it."""
-    factor: FloatArray | None = None
+def triangle(columns: Iterable[FloatArray], factor: FloatArray | None = None) -> FloatArray:
+    """R (C, C) with RᵀR = Σ X Xᵀ for pieces X (C, N) of the transposed equations, as a QR factorisation gives it.
+
+    A `factor` found from earlier pieces may be continued.
+    """
     for piece in columns:
         width = max(BLOCK // len(piece), 2 * len(piece))
         for first in range(0, piece.shape[1], width):

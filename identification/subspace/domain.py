@@ -4,47 +4,73 @@ from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from identification.arrays import ComplexArray
+from identification.arrays import ComplexArray, FloatArray
 from identification.errors import MisuseError, RangeError
 from identification.signals import FrequencyResponse
 from identification.state_space import StateSpace
-from identification.subspace.time_domains import bilinear_frequency, bilinear_variable, from_bilinear, from_hold
+from identification.subspace.time_domains import bilinear_variable, from_bilinear, from_hold, from_turned
+
+NEARLY_EVEN = 0.1  # lines spread as evenly as this stay where they are
 
 
 @dataclass(frozen=True, eq=False)
 class Domain:
-    """z (F,) of the lines; `centre` 2/T of the bilinear map in rad/s, None in discrete time; and what to give back."""
+    """The unit circle on which a model is identified.
+
+        discrete time:    e^{jωT} = (z + α)/(1 + αz),  −1 < α < 1
+        continuous time:  jω = (2/T)(z − 1)/(z + 1)                [Akcay2008, Identification of continuous-time models]
+
+    Both keep the frequency response, the order and the stable region. `z` (F,) are the lines, `centre` the frequency
+    in rad/s that lies at z = j: amid the measured ones, since lines crowded together determine little else.
+    """
 
     z: ComplexArray
     sample_time: float | None
-    centre: float | None
+    centre: float
     zero_order_hold: bool = False
 
     @classmethod
     def of(cls, data: FrequencyResponse, zero_order_hold: bool, centre: float | None) -> Self:
-        """e^{jωT} in discrete time, the bilinear map in continuous time.
+        """That of a measurement, around its median frequency where no `centre` is given.
 
-        Raises MisuseError for a zero-order hold on continuous-time data, and for a `centre` on discrete-time data.
+        Raises MisuseError for a zero-order hold on continuous-time data, RangeError for a `centre` out of range.
         """
-        if data.sample_time is None:
-            if zero_order_hold:
-                raise MisuseError(
-                    "there is no zero-order hold in a continuous-time response; state the sample time of the data, or"
-                    " leave the hold out",
-                    "zero_order_hold",
-                )
-            centre = bilinear_frequency(data.frequencies) if centre is None else centre
-            if not (np.isfinite(centre) and centre > 0):
-                raise RangeError(f"the centre of the bilinear map is {centre}; it must be positive", "centre")
-            return cls(bilinear_variable(data.frequencies, centre), None, centre)
-        if centre is not None:
-            raise MisuseError("the bilinear map belongs to continuous time; leave its centre out", "centre")
-        return cls(np.exp(1j * data.frequencies * data.sample_time), data.sample_time, None, zero_order_hold)
+        period = data.sample_time
+        if period is None and zero_order_hold:
+            raise MisuseError(
+                "there is no zero-order hold in a continuous-time response; state the sample time of the data, or"
+                " leave the hold out",
+                "zero_order_hold",
+            )
+        given = _median(data.frequencies) if centre is None else centre
+        if not (np.isfinite(given) and 0 < given and (period is None or given < np.pi / period)):
+            raise RangeError(
+                f"the centre is {given} rad/s; it must be positive and below the Nyquist frequency", "centre"
+            )
+        if period is None:
+            return cls(bilinear_variable(data.frequencies, given), None, given)
+        found = cls(np.exp(1j * data.frequencies * period), period, given, zero_order_hold)
+        if centre is None and abs(found.turn) < NEARLY_EVEN:
+            return cls(found.z, period, np.pi / 2 / period, zero_order_hold)
+        return cls((found.z - found.turn) / (1 - found.turn * found.z), period, given, zero_order_hold)
 
-    def model(self, a: object, b: object, c: object, d: object) -> StateSpace:
+    @property
+    def turn(self) -> float:
+        """α; zero where the centre is half the Nyquist frequency, and in continuous time."""
+        return 0.0 if self.sample_time is None else float(np.tan(np.pi / 4 - self.centre * self.sample_time / 2))
+
+    def model(self, a: ArrayLike, b: ArrayLike, c: ArrayLike, d: ArrayLike) -> StateSpace:
         """The model whose matrices in z these are, in the time domain asked for."""
-        if self.centre is not None:
-            return from_bilinear(StateSpace(a, b, c, d, 1.0), self.centre)  # type: ignore[arg-type]
-        model = StateSpace(a, b, c, d, self.sample_time)  # type: ignore[arg-type]
+        matrices = (np.asarray(m, dtype=np.float64) for m in (a, b, c, d))
+        if self.sample_time is None:
+            return from_bilinear(StateSpace(*matrices, 1.0), self.centre)
+        model = StateSpace(*matrices, self.sample_time)
+        model = from_turned(model, self.turn) if abs(self.turn) > 1e-15 else model
         return from_hold(model) if self.zero_order_hold else model
+
+
+def _median(omega: FloatArray) -> float:
+    positive = omega[omega > 0]
+    return float(np.median(positive)) if len(positive) else 1.0

@@ -1,8 +1,6 @@
 """The dominant left singular vectors of a matrix with few rows and many columns, to full precision."""
 
 import numpy as np
-from scipy.linalg import solve_triangular
-
 from identification.arrays import FloatArray
 
 RESOLVED = 1e-11  # of the largest eigenvalue of X Xᵀ: smaller ones are found in another round
@@ -29,11 +27,11 @@ def dominant_left_vectors(rows: FloatArray, count: int) -> tuple[FloatArray, Flo
         kept = min(count - found, int(np.sum(usable)))
         if kept:
             orthonormal = _row_space(rows, vectors[:, :kept], values[:kept])
-            parts.append(rows @ orthonormal)
+            parts.append(rows @ orthonormal.T)
             found += kept
         if found == count or kept == 0:
             break
-        rows = rows - parts[-1] @ orthonormal.T
+        rows = rows - parts[-1] @ orthonormal
     if not parts:
         return np.zeros((len(rows), 0)), np.zeros(len(rows))
     left, sizes, _ = np.linalg.svd(np.concatenate(parts, axis=1), full_matrices=False)
@@ -42,7 +40,7 @@ def dominant_left_vectors(rows: FloatArray, count: int) -> tuple[FloatArray, Flo
 
 
 def _row_space(rows: FloatArray, vectors: FloatArray, values: FloatArray) -> FloatArray:
-    """orth(Xᵀ V) (N, r) for eigenvectors of X Xᵀ: nearly orthogonal columns, so that one Cholesky step does."""
-    columns = rows.T @ (vectors / np.sqrt(values))
-    factor = np.linalg.cholesky(columns.T @ columns)
-    return np.ascontiguousarray(solve_triangular(factor, columns.T, lower=True, check_finite=False).T)
+    """orth(Xᵀ V)ᵀ (r, N) for eigenvectors of X Xᵀ: nearly orthogonal rows, so that one Cholesky step does."""
+    found = (vectors / np.sqrt(values)).T @ rows
+    factor = np.linalg.cholesky(found @ found.T)
+    return np.asarray(np.linalg.inv(factor) @ found)

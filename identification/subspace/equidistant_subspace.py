@@ -60,9 +60,10 @@ class EquidistantSubspace:
 
     def domain(self, data: FrequencyResponse) -> Domain:
         """The place of the lines on the unit circle; in continuous time from the first step, N being odd."""
-        centre = None
-        if data.sample_time is None and len(data) > 1:
-            centre = float(np.sort(data.frequencies)[1] / np.tan(np.pi / (2 * len(data) - 1)))
+        first = float(np.sort(data.frequencies)[min(1, len(data) - 1)])
+        centre = (
+            first / np.tan(np.pi / (2 * len(data) - 1)) if data.sample_time is None else np.pi / 2 / data.sample_time
+        )
         return Domain.of(data, self.zero_order_hold, centre)
 
     def default_block_rows(self, order: int, data: FrequencyResponse) -> int:
@@ -112,7 +113,9 @@ def circle_points(z: ComplexArray) -> int:
     """N of lines z_k = e^{j2πk/N}, k = 0 … N/2, with their conjugates; raises RangeError for other lines."""
     angle, count = np.angle(z) % (2 * np.pi), len(z)
     for points in (2 * count - 2, 2 * count - 1):
-        if points > 0 and np.allclose(angle, 2 * np.pi * np.arange(count) / points, rtol=0, atol=SPACING_TOLERANCE / points):
+        if points > 0 and np.allclose(
+            angle, 2 * np.pi * np.arange(count) / points, rtol=0, atol=SPACING_TOLERANCE / points
+        ):
             return points
     if count > 1 and angle[0] == 0:
         raise RangeError(

@@ -115,7 +115,8 @@ class Method(Protocol):
 def estimate(method: Method, data: FrequencyResponse) -> SubspaceEstimate:
     """The steps of both algorithms: order, observability range, A and C, B and D, errors."""
     _check(method)
-    data = data.lines(np.argsort(data.frequencies))
+    if np.any(np.diff(data.frequencies) < 0):
+        data = data.lines(np.argsort(data.frequencies))
     if not np.any(data.response):
         raise RangeError("the response is zero at every frequency; check the measurement", "response")
     trials: tuple[OrderTrial, ...] = ()

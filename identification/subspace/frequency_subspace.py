@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
+import numpy as np
+
 from identification.arrays import ComplexArray
 from identification.errors import NotIdentifiableError
 from identification.signals import FrequencyResponse
@@ -39,7 +41,7 @@ class FrequencySubspace:
     transition: Annotated[Transition, "how A is found from the observability matrix"] = "least_squares"
     stability: Annotated[Stability, "how the model is kept stable"] = "none"
     zero_order_hold: Annotated[bool, "give the continuous-time system behind a zero-order hold"] = False
-    centre: Annotated[float | None, "frequency that the bilinear map takes to z = j, rad/s; none: median"] = None
+    centre: Annotated[float | None, "frequency placed a quarter turn round the unit circle, rad/s; none: median"] = None
 
     @classmethod
     def example(cls) -> "FrequencySubspace":
@@ -55,8 +57,11 @@ class FrequencySubspace:
         return estimate(self, data)
 
     def domain(self, data: FrequencyResponse) -> Domain:
-        """The place of the lines on the unit circle."""
-        return Domain.of(data, self.zero_order_hold, self.centre)
+        """The place of the lines on the unit circle; where powers of z weight them, z is e^{jωT} itself."""
+        centre = self.centre
+        if self.weighting == "none" and centre is None and data.sample_time is not None:
+            centre = np.pi / 2 / data.sample_time
+        return Domain.of(data, self.zero_order_hold, centre)
 
     def default_block_rows(self, order: int, data: FrequencyResponse) -> int:
         """More than the order, the more the fewer outputs there are, as far as the lines reach."""

@@ -1,16 +1,14 @@
 """B and D by weighted linear least squares, for given A and C."""
 
-from collections.abc import Iterator
-
 import numpy as np
 
 from identification.arrays import ComplexArray, FloatArray
 from identification.errors import NotIdentifiableError
-from identification.resolvent import resolvent
+from identification.resolvent import resolvent, resolvent_by_entry
 from identification.subspace.compression import solve_compressed, triangle
 from identification.subspace.noise import Noise
 
-LINES = 1 << 16  # treated at a time
+NUMBERS = 1 << 18  # treated at a time
 
 
 def input_matrices(
@@ -28,9 +26,7 @@ def input_matrices(
         return _correlated(a, c, z, response, noise)
     if noise.same_for_inputs:
         return _weighted(a, c, z, response, noise.weights[..., 0])
-    parts = [
-        _weighted(a, c, z, response[..., j : j + 1], noise.weights[..., j]) for j in range(response.shape[2])
-    ]
+    parts = [_weighted(a, c, z, response[..., j : j + 1], noise.weights[..., j]) for j in range(response.shape[2])]
     b, d = (np.concatenate(each, axis=1) for each in zip(*parts, strict=True))
     return b, d
 
@@ -38,32 +34,37 @@ def input_matrices(
 def _weighted(
     a: FloatArray, c: FloatArray, z: ComplexArray, response: ComplexArray, weights: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """One weight for each line and output (F, n_y): D is eliminated, as it is a weighted mean of what B leaves."""
-    n, total = len(a), np.sum(weights**2, axis=0)
-    columns = _Columns(a, c, z, response, weights)
-    mean = sum((np.einsum("cka,ka->ac", x.real, w) for x, w in columns), np.zeros((len(c), n + response.shape[2])))
-    mean = mean / total[:, None]
-    pieces = (_real(x - w * mean.T[:, None, :]) for x, w in columns)
-    b, regular = solve_compressed(triangle(pieces), n)
+    """One weight for each line and output (F, n_y).
+
+    A row of D occurs in the equations of one output only, and is eliminated from them by their own triangle.
+    """
+    n, n_y = len(a), len(c)
+    factors: list[FloatArray | None] = [None] * n_y
+    step = max(NUMBERS // (n_y * (n + response.shape[2])), 64)
+    for first in range(0, len(z), step):
+        here = slice(first, first + step)
+        columns = _columns(a, c, z[here], response[here], weights[here])
+        factors = [triangle([x], factor) for x, factor in zip(columns, factors, strict=True)]
+    found = np.array(factors)
+    b, regular = solve_compressed(
+        triangle([np.ascontiguousarray(found[:, 1:, 1:].reshape(-1, found.shape[2] - 1).T)]), n
+    )
     if not regular:
         raise _not_determined(n)
-    return b, mean[:, n:] - mean[:, :n] @ b
+    return b, (found[:, 0, 1 + n :] - found[:, 0, 1 : 1 + n] @ b) / found[:, 0, :1]
 
 
-class _Columns:
-    """Weighted C (zI − A)⁻¹ and Ĝ, unknowns first, as (n + n_u, F', n_y), with their weights, block by block."""
-
-    def __init__(
-        self, a: FloatArray, c: FloatArray, z: ComplexArray, response: ComplexArray, weights: FloatArray
-    ) -> None:
-        self.a, self.c, self.z, self.response, self.weights = a, c, z, response, weights
-
-    def __iter__(self) -> Iterator[tuple[ComplexArray, FloatArray]]:
-        for first in range(0, len(self.z), LINES):
-            here = slice(first, first + LINES)
-            states = resolvent(self.a, np.eye(len(self.a)), self.c, self.z[here])
-            both = np.concatenate([states, self.response[here]], axis=2) * self.weights[here, :, None]
-            yield np.ascontiguousarray(np.moveaxis(both, 2, 0)), self.weights[here]
+def _columns(a: FloatArray, c: FloatArray, z: ComplexArray, response: ComplexArray, weights: FloatArray) -> FloatArray:
+    """Weighted [1, C (zI − A)⁻¹, Ĝ] of each output, real parts before imaginary ones, (n_y, 1 + n + n_u, 2F)."""
+    states, w = resolvent_by_entry(a, np.eye(len(a)), c, z), weights.T
+    n, count = len(a), len(z)
+    columns = np.empty((len(c), 1 + n + response.shape[2], 2 * count))
+    columns[:, 0, :count], columns[:, 0, count:] = w, 0.0
+    answers = response.transpose(1, 2, 0)
+    for part, here in ((np.real, slice(count)), (np.imag, slice(count, None))):
+        np.multiply(part(states), w[:, None], out=columns[:, 1 : 1 + n, here])
+        np.multiply(part(answers), w[:, None], out=columns[:, 1 + n :, here])
+    return columns
 
 
 def _correlated(

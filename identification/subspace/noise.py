@@ -5,7 +5,6 @@ from functools import cached_property
 from typing import Literal, Self
 
 import numpy as np
-from scipy.linalg import solve_triangular
 
 from identification.arrays import ComplexArray, FloatArray
 from identification.errors import MisuseError
@@ -66,16 +65,6 @@ class Noise:
         pairs = (values[:, None, :] * values.conj()).reshape(-1, count)
         gram = np.real(pairs @ between.reshape(count, -1)).reshape(size, size, n_y, n_y)
         return _cholesky(gram.transpose(2, 0, 3, 1).reshape(n_y * size, n_y * size) / count)
-
-
-def divide(factors: FloatArray | None, rows: FloatArray) -> FloatArray:
-    """K⁻¹ X for X (n_y, q, c)."""
-    if factors is None:
-        return rows
-    if factors.ndim == 3:
-        return np.stack([solve_triangular(k, x, lower=True) for k, x in zip(factors, rows, strict=True)])
-    flat = rows.reshape(len(factors), -1)
-    return np.asarray(solve_triangular(factors, flat, lower=True)).reshape(rows.shape)
 
 
 def multiply(factors: FloatArray | None, rows: FloatArray) -> FloatArray:

@@ -8,9 +8,11 @@ from scipy.linalg import solve_triangular
 from identification.arrays import ComplexArray, FloatArray
 from identification.errors import NotIdentifiableError
 from identification.subspace.dominant import dominant_left_vectors
-from identification.subspace.noise import Noise, divide, multiply
+from identification.subspace.noise import Noise, multiply
 from identification.subspace.polynomials import OrthonormalPolynomials
 from identification.subspace.transition import Stability, Transition, projected, transition_matrix
+
+COLUMNS = 1 << 13  # treated at a time, so that they stay in the cache
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,19 +77,29 @@ def observability_range(
 
 def _projected_rows(values: ComplexArray, factors: FloatArray | None, response: ComplexArray) -> FloatArray:
     """K⁻¹ 𝒢 𝒲^⊥ / √F, (n_y q, 2 n_u F), for the polynomials (q, F) and Ĝ (F, n_y, n_u)."""
-    size, count = values.shape
-    transposed = np.ascontiguousarray(np.moveaxis(response, 0, 2))[:, None]
-    correlated = factors is not None and factors.ndim == 2
-    weighted = values[None]
-    if factors is not None and not correlated:
-        stacked = np.broadcast_to(values.view(np.float64), (len(factors), size, 2 * count))
-        weighted = divide(factors, stacked).view(np.complex128)
-    rows = (weighted[:, :, None, :] * transposed).view(np.float64)
-    if correlated:
-        rows = np.ascontiguousarray(divide(factors, rows.reshape(*rows.shape[:2], -1))).reshape(rows.shape)
-    flat, basis = rows.reshape(-1, 2 * count), values.view(np.float64)
-    flat -= (flat @ basis.T / count) @ basis
-    return rows.reshape(-1, response.shape[2] * 2 * count) / np.sqrt(count)
+    (size, count), (_, n_y, n_u) = values.shape, response.shape
+    rows = np.empty((n_y, size, n_u, count), dtype=np.complex128)
+    scaled = response / np.sqrt(count)
+    for i in range(n_y):
+        weighted = values
+        if factors is not None and factors.ndim == 3:
+            weighted = solve_triangular(factors[i], values.view(np.float64), lower=True).view(np.complex128)
+        for j in range(n_u):
+            np.multiply(weighted, scaled[:, i, j], out=rows[i, :, j])
+    if factors is not None and factors.ndim == 2:
+        whole = rows.view(np.float64).reshape(n_y * size, -1)
+        rows = np.ascontiguousarray(solve_triangular(factors, whole, lower=True)).view(np.complex128)
+    _project_out(rows.view(np.float64).reshape(n_y, size * n_u, 2 * count), values.view(np.float64))
+    return rows.view(np.float64).reshape(n_y * size, -1)
+
+
+def _project_out(rows: FloatArray, basis: FloatArray) -> None:
+    """Subtracts from each of several matrices (…, R, N) its projection on a basis (q, N) of norm √(N/2), in place."""
+    for some in rows:
+        part = some @ basis.T * (2 / basis.shape[1])
+        for first in range(0, basis.shape[1], COLUMNS):
+            here = slice(first, first + COLUMNS)
+            some[:, here] -= part @ basis[:, here]
 
 
 def _powers(shift: FloatArray, outputs: int) -> FloatArray:

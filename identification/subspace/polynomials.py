@@ -8,6 +8,8 @@ import numpy as np
 from identification.arrays import ComplexArray, FloatArray
 from identification.errors import NotIdentifiableError
 
+CANCELLED = 0.5  # of the squared length of z φ_i, which is one
+
 
 @dataclass(frozen=True, eq=False)
 class OrthonormalPolynomials:
@@ -16,8 +18,8 @@ class OrthonormalPolynomials:
         1/F Σ_k Re φ_i(z_k)* φ_j(z_k) = δ_ij,   φ_0 = 1,   z φ_i = Σ_{j ≤ i+1} h_ji φ_j
 
     They span the rows z^i of the block Vandermonde matrix [Akcay2008, Algorithm 2] and take their place, because the
-    powers themselves are nearly dependent where the lines lie close together. Built by Arnoldi's recursion with two
-    orthogonalisations. `values` (q, F); `shift`: the h_ji as (q, q), the part of z φ_{q−1} beyond φ_{q−1} left out.
+    powers themselves are nearly dependent where the lines lie close together. Built by Arnoldi's recursion, with a
+    second orthogonalisation where the first one cancels. `values` (q, F); `shift`: the h_ji as (q, q), the part of z φ_{q−1} beyond φ_{q−1} left out.
     Multiplication by z preserves the norm on |z| = 1, so that ‖shift‖ ≤ 1.
     """
 
@@ -49,8 +51,9 @@ class OrthonormalPolynomials:
 def _orthogonalise(vector: ComplexArray, basis: ComplexArray) -> FloatArray:
     """Subtracts the projection of a vector (F,) on an orthonormal basis (i, F) in place; its coefficients (i,)."""
     real_vector, real_basis = vector.view(np.float64), basis.view(np.float64)
-    total = np.zeros(len(basis))
-    for _ in range(2):
+    total = real_basis @ real_vector / len(vector)
+    real_vector -= total @ real_basis
+    if total @ total > CANCELLED:
         part = real_basis @ real_vector / len(vector)
         real_vector -= part @ real_basis
         total += part

@@ -8,12 +8,6 @@ from identification.errors import NotIdentifiableError, RangeError
 from identification.state_space import StateSpace
 
 
-def bilinear_frequency(omega: FloatArray) -> float:
-    """The frequency 2/T in rad/s that the bilinear map takes to z = j: the median of those measured."""
-    positive = omega[omega > 0]
-    return float(np.median(positive)) if len(positive) else 1.0
-
-
 def bilinear_variable(omega: FloatArray, centre: float) -> ComplexArray:
     """z of s = jω, at 2/T = `centre`, of modulus one: e^{2j arctan(ω/centre)}, so that the response stays as it is."""
     return np.exp(2j * np.arctan(omega / centre))
@@ -39,10 +33,23 @@ def from_bilinear(model: StateSpace, centre: float) -> StateSpace:
     return StateSpace(centre * a, scale * b, scale * c, model.d - model.c @ b, None)
 
 
+def from_turned(model: StateSpace, turn: float) -> StateSpace:
+    """The discrete-time system that is `model` where z is replaced by (z − α)/(1 − αz), α = `turn`, |α| < 1.
+
+    E = I + αA,  A_d = E⁻¹(A + αI),  B_d = √(1 − α²) E⁻¹ B,  C_d = √(1 − α²) C E⁻¹,  D_d = D − α C E⁻¹ B
+    """
+    one = np.eye(model.order)
+    mixed = one + turn * model.a
+    a, b = np.linalg.solve(mixed, model.a + turn * one), np.linalg.solve(mixed, model.b)
+    c = np.linalg.solve(mixed.T, model.c.T).T
+    scale = np.sqrt(1 - turn**2)
+    return StateSpace(a, scale * b, scale * c, model.d - turn * model.c @ b, model.sample_time)
+
+
 def held(model: StateSpace, sample_time: float) -> StateSpace:
     """The samples of a continuous-time system whose input a zero-order hold makes.
 
-        [A B; 0 I] = exp([A_c B_c; 0 0] T)
+    [A B; 0 I] = exp([A_c B_c; 0 0] T)
     """
     n, m = model.b.shape
     generator = np.zeros((n + m, n + m))
