@@ -11,7 +11,7 @@ from identification.arrays import ComplexArray, FloatArray
 
 
 def integrated_response(channel: OpenChannel, positions: FloatArray, omega: float) -> ComplexArray:
-    """[G_e, G_s] at rising positions (X,) and one ω in rad/s, as (X, 2), by integrating the linear equations along x.
+    """[G_e, G_s] at positions (X,) and one ω in rad/s, as (X, 2), by integrating the linear equations along x.
 
         d/dx [q; h] = [0, −B₀ s; −(s − β)/((c₀² − V₀²) B₀), (2V₀B₀ s + γ)/((c₀² − V₀²) B₀)] [q; h],   s = jω
 
@@ -22,11 +22,12 @@ def integrated_response(channel: OpenChannel, positions: FloatArray, omega: floa
     leading = (channel.celerity**2 - channel.velocity**2) * width
     slope = np.array([[0, -width * s], [-(s - beta) / leading, (2 * channel.velocity * width * s + gamma) / leading]])
     ends = (0.0, channel.length)
-    at = np.append(positions, channel.length)
+    at, places = np.unique(np.append(positions, channel.length), return_inverse=True)
     runs = [
         solve_ivp(lambda _, state: slope @ state, ends, start, "DOP853", at, rtol=1e-11, atol=1e-14).y
         for start in (np.array([1 + 0j, 0]), np.array([0j, 1]))
     ]
+    runs = [run[:, places] for run in runs]
     flows = [run[0, -1] for run in runs]
     levels = [run[1, :-1] for run in runs]
     entering = levels[0] - flows[0] / flows[1] * levels[1]
