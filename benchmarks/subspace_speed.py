@@ -47,7 +47,8 @@ def main() -> None:
     )
     for row in growing:
         print(
-            f"{row['lines']:8.0f} lines  {1e3 * row['seconds']:9.2f} ms  {1e6 * row['seconds'] / row['lines']:6.2f} µs a line"
+            f"{row['lines']:8.0f} lines  {1e3 * row['seconds']:9.2f} ms"
+            f"  {1e6 * row['seconds'] / row['lines']:6.2f} µs a line"
         )
     print(f"time grows as lines^{exponent:.2f}")
     if arguments.output:

@@ -4,7 +4,6 @@ from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from identification.arrays import ComplexArray, FloatArray
 from identification.errors import MisuseError, RangeError
@@ -44,8 +43,8 @@ class Domain:
                 " leave the hold out",
                 "zero_order_hold",
             )
-        given = _median(data.frequencies) if centre is None else centre
-        if not (np.isfinite(given) and 0 < given and (period is None or given < np.pi / period)):
+        given = _amid(data) if centre is None else centre
+        if not (np.isfinite(given) and given > 0 and (period is None or given < np.pi / period)):
             raise RangeError(
                 f"the centre is {given} rad/s; it must be positive and below the Nyquist frequency", "centre"
             )
@@ -61,16 +60,19 @@ class Domain:
         """α; zero where the centre is half the Nyquist frequency, and in continuous time."""
         return 0.0 if self.sample_time is None else float(np.tan(np.pi / 4 - self.centre * self.sample_time / 2))
 
-    def model(self, a: ArrayLike, b: ArrayLike, c: ArrayLike, d: ArrayLike) -> StateSpace:
+    def model(self, a: FloatArray, b: FloatArray, c: FloatArray, d: FloatArray) -> StateSpace:
         """The model whose matrices in z these are, in the time domain asked for."""
-        matrices = (np.asarray(m, dtype=np.float64) for m in (a, b, c, d))
         if self.sample_time is None:
-            return from_bilinear(StateSpace(*matrices, 1.0), self.centre)
-        model = StateSpace(*matrices, self.sample_time)
+            return from_bilinear(StateSpace(a, b, c, d, 1.0), self.centre)
+        model = StateSpace(a, b, c, d, self.sample_time)
         model = from_turned(model, self.turn) if abs(self.turn) > 1e-15 else model
         return from_hold(model) if self.zero_order_hold else model
 
 
-def _median(omega: FloatArray) -> float:
-    positive = omega[omega > 0]
-    return float(np.median(positive)) if len(positive) else 1.0
+def _amid(data: FrequencyResponse) -> float:
+    """The median of the frequencies between zero and the Nyquist frequency."""
+    omega, period = data.frequencies, data.sample_time
+    inside = omega[(omega > 0) & ((omega * (period or 0.0)) < np.pi * (1 - 1e-6))]
+    if len(inside):
+        return float(np.median(inside))
+    return 1.0 if period is None else np.pi / 2 / period

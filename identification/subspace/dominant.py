@@ -1,10 +1,11 @@
 """The dominant left singular vectors of a matrix with few rows and many columns, to full precision."""
 
 import numpy as np
+
 from identification.arrays import FloatArray
 
 RESOLVED = 1e-11  # of the largest eigenvalue of X Xᵀ: smaller ones are found in another round
-NEGLIGIBLE = 1e-29
+NEGLIGIBLE = 1e-36
 
 
 def dominant_left_vectors(rows: FloatArray, count: int) -> tuple[FloatArray, FloatArray]:
@@ -14,8 +15,8 @@ def dominant_left_vectors(rows: FloatArray, count: int) -> tuple[FloatArray, Flo
 
     The eigenvectors of X Xᵀ that are well above the rounding error of squares choose a few columns; a Rayleigh–Ritz
     step on X itself makes these as accurate as a QR factorisation of Xᵀ would at a fraction of its work. What is
-    smaller is found from X − X Q Qᵀ in another round, so that singular values count down to 10⁻¹⁴ of the largest;
-    what lies below that is rounding error and gives no vectors (r < `count`).
+    smaller is found from X − X Q Qᵀ in another round, so that singular values count down to some 10⁻¹⁵ of the
+    largest; below lie rounding errors, and r < `count` only where nothing at all is left.
     """
     parts: list[FloatArray] = []
     largest, found = 0.0, 0

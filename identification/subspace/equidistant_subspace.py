@@ -67,8 +67,8 @@ class EquidistantSubspace:
         return Domain.of(data, self.zero_order_hold, centre)
 
     def default_block_rows(self, order: int, data: FrequencyResponse) -> int:
-        """Twice the order or more where there are lines enough: rows of impulse response that has not yet decayed."""
-        return min(max(4 * order, FEWEST_BLOCKS), len(data) - 1)
+        """Six times the order where there are lines enough: rows of impulse response that has not yet decayed."""
+        return min(max(6 * order, FEWEST_BLOCKS), len(data) - 1)
 
     def most_orders(self, block_rows: int | None, data: FrequencyResponse) -> int:
         """The highest n with n < q and q + n ≤ 2M, and what the number of lines allows."""
@@ -104,7 +104,7 @@ class EquidistantSubspace:
         columns = min(block_rows, count - block_rows) if self.block_columns is None else self.block_columns
         matrix = _hankel(np.fft.irfft(data.matrices, count, axis=0), block_rows, columns)
         left, sizes, _ = np.linalg.svd(matrix, full_matrices=False)
-        found = min(order, int(np.sum(sizes > 1e-14 * sizes[0])))
+        found = min(order, int(np.sum(sizes > 0)))
         vectors = left[:, :found].reshape(block_rows, data.output_count, found).transpose(1, 0, 2)
         return ObservabilityRange(vectors, sizes, np.eye(block_rows, k=-1))
 

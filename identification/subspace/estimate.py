@@ -20,6 +20,7 @@ from identification.subspace.transition import Stability, Transition
 MOST_ORDERS = 20
 AS_GOOD = 1.05
 ROUNDING = 1e-10
+NOTHING = 1e-14
 
 
 @dataclass(frozen=True)
@@ -133,7 +134,7 @@ def estimate(method: Method, data: FrequencyResponse) -> SubspaceEstimate:
     model = domain.model(a, b, c, d)
     rms = float(np.sqrt(np.mean(errors**2)))
     size = float(np.linalg.norm(data.response) / np.sqrt(len(data)))
-    outcome = Outcome("converged", "" if model.stable else _UNSTABLE, 1)
+    outcome = Outcome("converged", _advice(model, found.singular_values), 1)
     return SubspaceEstimate(
         model,
         data.operating_point,
@@ -147,7 +148,13 @@ def estimate(method: Method, data: FrequencyResponse) -> SubspaceEstimate:
     )
 
 
-_UNSTABLE = "the model is unstable; use the stability 'projection', or another order"
+def _advice(model: StateSpace, singular_values: FloatArray) -> str:
+    shown = int(np.sum(singular_values > NOTHING * singular_values[0]))
+    texts = (
+        (not model.stable, "the model is unstable; use the stability 'projection', or another order"),
+        (model.order > shown, f"the data show order {shown} only, the rest describes rounding errors"),
+    )
+    return "; ".join(text for holds, text in texts if holds)
 
 
 def order_table(method: Method, data: FrequencyResponse) -> tuple[OrderTrial, ...]:

@@ -44,7 +44,7 @@ class Noise:
     def whiten(self, entries: ComplexArray) -> ComplexArray:
         """L_k⁻¹ x_k with R_k = L_k L_kᴴ, for x (F, m, c) and m = n_y n_u correlated entries."""
         assert self.covariance is not None
-        return np.linalg.solve(np.linalg.cholesky(self.covariance), entries)
+        return np.asarray(np.linalg.solve(np.linalg.cholesky(self.covariance), entries))
 
     def factors(self, polynomials: OrthonormalPolynomials) -> FloatArray | None:
         """K, lower triangular, (n_y, q, q) one an output, or (n_y q, n_y q) for correlated outputs; None for K = I.
@@ -78,13 +78,13 @@ def multiply(factors: FloatArray | None, rows: FloatArray) -> FloatArray:
 
 def _gram(scaled: ComplexArray) -> FloatArray:
     """Re X Xᴴ / F for X (…, q, F)."""
-    real = scaled.view(np.float64)
+    real = np.ascontiguousarray(scaled).view(np.float64)
     return np.asarray(real @ np.swapaxes(real, -1, -2) / scaled.shape[-1])
 
 
 def _cholesky(gram: FloatArray) -> FloatArray:
     try:
-        return np.linalg.cholesky(gram)
+        return np.asarray(np.linalg.cholesky(gram))
     except np.linalg.LinAlgError:
         raise MisuseError(
             "the variances differ so much that few lines carry all weight; leave out lines that are known too badly,"

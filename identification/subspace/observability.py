@@ -32,7 +32,7 @@ class ObservabilityRange:
     @property
     def highest_order(self) -> int:
         """The number of columns found."""
-        return self.columns.shape[2]
+        return int(self.columns.shape[2])
 
     def system(
         self, order: int, transition: Transition = "least_squares", stability: Stability = "none"
@@ -83,14 +83,19 @@ def _projected_rows(values: ComplexArray, factors: FloatArray | None, response: 
     for i in range(n_y):
         weighted = values
         if factors is not None and factors.ndim == 3:
-            weighted = solve_triangular(factors[i], values.view(np.float64), lower=True).view(np.complex128)
+            weighted = _solved(factors[i], values)
         for j in range(n_u):
             np.multiply(weighted, scaled[:, i, j], out=rows[i, :, j])
     if factors is not None and factors.ndim == 2:
-        whole = rows.view(np.float64).reshape(n_y * size, -1)
-        rows = np.ascontiguousarray(solve_triangular(factors, whole, lower=True)).view(np.complex128)
+        rows = _solved(factors, rows.reshape(n_y * size, -1))
     _project_out(rows.view(np.float64).reshape(n_y, size * n_u, 2 * count), values.view(np.float64))
     return rows.view(np.float64).reshape(n_y * size, -1)
+
+
+def _solved(factor: FloatArray, rows: ComplexArray) -> ComplexArray:
+    """K⁻¹ X for a lower triangular K (R, R) and X (R, N)."""
+    solved = solve_triangular(factor, rows.view(np.float64), lower=True)
+    return np.ascontiguousarray(solved).view(np.complex128)
 
 
 def _project_out(rows: FloatArray, basis: FloatArray) -> None:

@@ -19,8 +19,8 @@ class OrthonormalPolynomials:
 
     They span the rows z^i of the block Vandermonde matrix [Akcay2008, Algorithm 2] and take their place, because the
     powers themselves are nearly dependent where the lines lie close together. Built by Arnoldi's recursion, with a
-    second orthogonalisation where the first one cancels. `values` (q, F); `shift`: the h_ji as (q, q), the part of z φ_{q−1} beyond φ_{q−1} left out.
-    Multiplication by z preserves the norm on |z| = 1, so that ‖shift‖ ≤ 1.
+    second orthogonalisation where the first one cancels. `values` (q, F); `shift`: the h_ji as (q, q), the part of
+    z φ_{q−1} beyond φ_{q−1} left out. Multiplication by z preserves the norm on |z| = 1, so that ‖shift‖ ≤ 1.
     """
 
     values: ComplexArray

@@ -30,7 +30,7 @@ def from_bilinear(model: StateSpace, centre: float) -> StateSpace:
     scale = np.sqrt(2 * centre)
     a, b = np.linalg.solve(shifted, model.a - one), np.linalg.solve(shifted, model.b)
     c = np.linalg.solve(shifted.T, model.c.T).T
-    return StateSpace(centre * a, scale * b, scale * c, model.d - model.c @ b, None)
+    return StateSpace(np.asarray(centre * a), np.asarray(scale * b), np.asarray(scale * c), model.d - model.c @ b, None)
 
 
 def from_turned(model: StateSpace, turn: float) -> StateSpace:
@@ -39,10 +39,10 @@ def from_turned(model: StateSpace, turn: float) -> StateSpace:
     E = I + αA,  A_d = E⁻¹(A + αI),  B_d = √(1 − α²) E⁻¹ B,  C_d = √(1 − α²) C E⁻¹,  D_d = D − α C E⁻¹ B
     """
     one = np.eye(model.order)
-    mixed = one + turn * model.a
-    a, b = np.linalg.solve(mixed, model.a + turn * one), np.linalg.solve(mixed, model.b)
-    c = np.linalg.solve(mixed.T, model.c.T).T
-    scale = np.sqrt(1 - turn**2)
+    mixed, scale = one + turn * model.a, float(np.sqrt(1 - turn**2))
+    a = np.asarray(np.linalg.solve(mixed, model.a + turn * one), dtype=np.float64)
+    b = np.asarray(np.linalg.solve(mixed, model.b), dtype=np.float64)
+    c = np.asarray(np.linalg.solve(mixed.T, model.c.T).T, dtype=np.float64)
     return StateSpace(a, scale * b, scale * c, model.d - turn * model.c @ b, model.sample_time)
 
 
@@ -61,7 +61,7 @@ def held(model: StateSpace, sample_time: float) -> StateSpace:
 def from_hold(model: StateSpace) -> StateSpace:
     """The continuous-time system whose samples behind a zero-order hold are `model`, with |Im s| < π/T.
 
-    Raises RangeError for a pole on the negative real axis or at zero, which no continuous-time system of this order has.
+    Raises RangeError for a pole on the negative real axis or at zero, which no such system of this order has.
     """
     assert model.sample_time is not None
     n, m = model.b.shape
