@@ -99,7 +99,7 @@ class EquidistantSubspace:
             raise NotIdentifiableError(
                 f"{block_rows} block rows and {self.block_columns or order} block columns need more than these"
                 f" {len(data)} lines; take fewer or measure more lines",
-                "block_rows",
+                "frequencies",
             )
         columns = min(block_rows, count - block_rows) if self.block_columns is None else self.block_columns
         matrix = _hankel(np.fft.irfft(data.matrices, count, axis=0), block_rows, columns)

@@ -15,8 +15,8 @@ def block_vandermonde(z, blocks):
     return np.concatenate([column(k) for k in range(len(z))], axis=1) / np.sqrt(len(z))
 
 
-def literal_subspace(omega, response, sample_time, order, block_rows, variance=None):
-    """A model of G (F, p, m); K from `variance` (F,) R_k = variance_k I, or K = I."""
+def literal_observability(omega, response, sample_time, block_rows, variance=None):
+    """K U (qp, qp) and the singular values of K⁻¹ R_22, for G (F, p, m); K from `variance` (F,), or K = I."""
     count, p, m = response.shape
     z = np.exp(1j * omega * sample_time)
     G = block_vandermonde(z, (response, block_rows))
@@ -28,8 +28,15 @@ def literal_subspace(omega, response, sample_time, order, block_rows, variance=N
     if variance is not None:
         Wp = block_vandermonde(z, (np.sqrt(variance)[:, None, None] * np.eye(p), block_rows))
         K = np.linalg.cholesky(np.real(Wp @ Wp.conj().T))
-    U = np.linalg.svd(np.linalg.solve(K, r22))[0][:, :order]
-    o = K @ U
+    left, sizes, _ = np.linalg.svd(np.linalg.solve(K, r22))
+    return K @ left, sizes
+
+
+def literal_subspace(omega, response, sample_time, order, block_rows, variance=None):
+    """The model of order n."""
+    count, p, _ = response.shape
+    z = np.exp(1j * omega * sample_time)
+    o = literal_observability(omega, response, sample_time, block_rows, variance)[0][:, :order]
     a, c = np.linalg.lstsq(o[:-p], o[p:])[0], o[:p]
     weights = np.ones(count) if variance is None else 1 / np.sqrt(variance)
     rows, right = [], []
