@@ -8,7 +8,7 @@ from math import comb
 import numpy as np
 
 from identification.arrays import FloatArray
-from identification.errors import NotIdentifiableError
+from identification.errors import NotIdentifiableError, ShapeError
 
 FEW = 3000
 SINGULAR = 1e-12
@@ -27,17 +27,23 @@ class CanonicalRows:
     worst_singular_value: float
 
 
-def choose_rows(observabilities: Sequence[FloatArray], outputs: int) -> CanonicalRows:
+def choose_rows(
+    observabilities: Sequence[FloatArray], outputs: int, counts: Sequence[int] | None = None
+) -> CanonicalRows:
     """The best conditioned choice S of n independent rows, the same for all O_m (q n_y, n) [Kergus2019, (13)].
 
     Each output gives its first rows without a gap, as the observability canonical forms do, so that a plant whose
     matrices in canonical form are sums of the basis functions stays one. All such choices are tried while they are few
-    (so always with one output); otherwise rows are added one at a time, the best each time.
-    Raises NotIdentifiableError when every choice is singular somewhere.
+    (so always with one output); otherwise rows are added one at a time, the best each time. `counts` states the choice.
+    Raises ShapeError for stated counts that do not add up to n, NotIdentifiableError when every choice is singular
+    somewhere.
     """
     bases = np.stack([np.linalg.qr(o)[0] for o in observabilities])
     order, blocks = bases.shape[2], bases.shape[1] // outputs
-    if comb(order + outputs - 1, outputs - 1) <= FEW:
+    if counts is not None:
+        _require_counts(counts, order, blocks, outputs)
+        value, counts = _worst(bases, counts), tuple(counts)
+    elif comb(order + outputs - 1, outputs - 1) <= FEW:
         choices = [c for c in _compositions(order, outputs) if max(c) <= blocks]
         scored = [(_worst(bases, c), c) for c in choices]
         value, counts = max(scored)
@@ -51,6 +57,15 @@ def choose_rows(observabilities: Sequence[FloatArray], outputs: int) -> Canonica
             "order",
         )
     return CanonicalRows(counts, tuple(_rows(counts)), value)
+
+
+def _require_counts(counts: Sequence[int], order: int, blocks: int, outputs: int) -> None:
+    if len(counts) != outputs or sum(counts) != order or not all(0 <= count <= blocks for count in counts):
+        raise ShapeError(
+            f"rows per output {tuple(counts)} do not make a basis of {order} states with {outputs} outputs; give one"
+            f" count per output, {order} in all, none above {blocks}",
+            "rows_per_output",
+        )
 
 
 def canonical(observability: FloatArray, rows: CanonicalRows) -> FloatArray:

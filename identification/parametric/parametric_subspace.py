@@ -47,6 +47,9 @@ class ParametricSubspace:
     order: Annotated[int, "number of states n"]
     block_rows: Annotated[int | None, "block rows q > n of the observability matrix, None for 2 n"] = None
     weighting: Annotated[Weighting, "weight of the subspaces: the stated variances of the noise, or none"] = "variance"
+    rows_per_output: Annotated[tuple[int, ...] | None, "rows of each output that make the state, None for the best"] = (
+        None
+    )
     region: Annotated[PoleRegion | None, "where all poles must lie, None for anywhere"] = None
     margin: Annotated[float, "how far inside the region, as largest eigenvalue of its matrix inequality"] = 1e-5
     misfit: Annotated[Misfit, "norm of the subspaces' misfit in the programme with a region"] = "frobenius"
@@ -88,7 +91,9 @@ class ParametricSubspace:
             local_subspace(data, z, basis, self.order, self.weighting)
             for data, z in zip(experiments, lines, strict=True)
         ]
-        rows = choose_rows([subspace.observability for subspace in subspaces], experiments[0].output_count)
+        rows = choose_rows(
+            [subspace.observability for subspace in subspaces], experiments[0].output_count, self.rows_per_output
+        )
         shared = [canonical(subspace.observability, rows) for subspace in subspaces]
         problem = _Problem(shift_equations(shared, basis, dependence, points), dependence, points, experiments, lines)
         singular_values = tuple(subspace.singular_values for subspace in subspaces)

@@ -20,6 +20,7 @@ from identification.response_tests import real_count, variance_inflation
 from identification.signals import FrequencyResponse
 from identification.whiteness import chi_square
 
+PRECISION = 3e-5  # the search ends when the misfit could fall by less than this squared
 EFFECTIVE = 1e-7  # smaller changes of the response, relative to the largest, are taken for none
 
 
@@ -58,15 +59,17 @@ class StateSpaceLikelihood:
 
     The search moves in data-driven local coordinates, the directions of θ that change the responses, chosen anew in
     every round [McKelvey2004]. With a `region` no step is taken after which a pole leaves it at the operating points
-    of a grid; a proof for those between is not given.
+    of a grid; a proof for those between is not given. Where the entries can do more than the plant needs, some
+    directions are hardly determined and the covariance, exact to first order in the noise, is too optimistic.
     """
 
     kind: ClassVar[str] = "state_space_likelihood"
     data: ClassVar[type] = FrequencyResponse
 
     region: Annotated[PoleRegion | None, "where all poles must stay, None for anywhere"] = None
-    rounds: Annotated[int, "most changes of the local coordinates"] = 4
-    max_iterations: Annotated[int, "most iterations of each round"] = 50
+    margin: Annotated[float, "how far inside the region, as largest eigenvalue of its matrix inequality"] = 1e-6
+    rounds: Annotated[int, "most changes of the local coordinates"] = 10
+    max_iterations: Annotated[int, "most iterations of each round"] = 30
 
     def estimate(
         self, start: ParameterVaryingStateSpace, experiments: Sequence[FrequencyResponse]
@@ -83,7 +86,7 @@ class StateSpaceLikelihood:
         for _ in range(self.rounds):
             solution, chart = self._round(parameters, theta, experiments, whiteners)
             theta, iterations = theta + chart @ solution.x, iterations + solution.outcome.iterations
-            if solution.outcome.ok or solution.cost > cost * (1 - 1e-9):
+            if solution.outcome.ok or solution.cost > cost * (1 - PRECISION**2):
                 break
             cost = solution.cost
         return _estimate(parameters, theta, chart, solution, experiments, iterations)
@@ -108,19 +111,20 @@ class StateSpaceLikelihood:
 
         start = np.zeros(chart.shape[1])
         inside = feasible if self.region is not None else None
-        return levenberg_marquardt(evaluate, start, inside, self.max_iterations, 1e-7), chart
+        return levenberg_marquardt(evaluate, start, inside, self.max_iterations, PRECISION), chart
 
     def _inside(self, model: ParameterVaryingStateSpace) -> bool:
         count = len(model.variables)
         points = grid(model.variables, 65) if count == 1 else fine_grid(model.variables)
-        return self.region is None or bool(np.all(self.region.contains(model.poles(points))))
+        return self.region is None or bool(np.all(self.region.excess(model.poles(points)) < -self.margin))
 
     def _check(self, start: ParameterVaryingStateSpace, experiments: Sequence[FrequencyResponse]) -> None:
         for data in experiments:
-            if data.sample_time != start.sample_time or data.matrices.shape[1:] != start.d.shape[1:]:
+            ours, theirs = (start.sample_time, start.d.shape[1:]), (data.sample_time, data.matrices.shape[1:])
+            if ours != theirs:
                 raise MisuseError(
-                    f"the start has sample time {start.sample_time} and {start.d.shape[1:]} outputs × inputs, the"
-                    f" data at {data.operating_point} have {data.sample_time} and {data.matrices.shape[1:]}; they must agree",
+                    f"sample time and outputs × inputs are {ours} in the start and {theirs} in the data at"
+                    f" {data.operating_point}; they must agree",
                     "start",
                 )
         freedom = _freedom(start, experiments)
@@ -132,7 +136,9 @@ class StateSpaceLikelihood:
             )
         if not self._inside(start):
             raise MisuseError(
-                "poles of the start lie outside the region; start from a model estimated with this region", "start"
+                "poles of the start lie outside the region, or closer to its edge than the margin; start from a model"
+                " estimated with this region",
+                "start",
             )
 
     @classmethod
@@ -173,8 +179,13 @@ def _rank(jacobian: FloatArray) -> int:
 
 
 def _freedom(model: ParameterVaryingStateSpace, experiments: Sequence[FrequencyResponse]) -> int:
-    size: int = sum(m.size for m in (model.a, model.b, model.c, model.d)) - model.order**2
-    return int(sum(real_count(data) * data.matrices[0].size for data in experiments) - size)
+    size = len(StateSpaceParameters(model).vector(model)) - model.order**2
+    count: int = sum(real_count(data) * _entries(data) for data in experiments)
+    return count - size
+
+
+def _entries(data: FrequencyResponse) -> int:
+    return int(data.output_count * data.input_count)
 
 
 def _estimate(
