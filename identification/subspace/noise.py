@@ -5,11 +5,11 @@ from functools import cached_property
 from typing import Literal, Self
 
 import numpy as np
+from scipy.linalg import solve_triangular
 
 from identification.arrays import ComplexArray, FloatArray
 from identification.errors import MisuseError
 from identification.signals import FrequencyResponse
-from identification.subspace.polynomials import OrthonormalPolynomials
 
 Weighting = Literal["automatic", "variance", "equal", "none"]
 
@@ -46,25 +46,57 @@ class Noise:
         assert self.covariance is not None
         return np.asarray(np.linalg.solve(np.linalg.cholesky(self.covariance), entries))
 
-    def factors(self, polynomials: OrthonormalPolynomials) -> FloatArray | None:
-        """K, lower triangular, (n_y, q, q) one an output, or (n_y q, n_y q) for correlated outputs; None for K = I.
+    @cached_property
+    def equal(self) -> bool:
+        """Whether it is the same on all lines, and uncorrelated."""
+        return self.covariance is None and np.ptp(self.weights) == 0
 
-            K Kᵀ = α Re Σ_k R_k ⊗ φ(z_k) φ(z_k)ᴴ,   R_k = Σ_j E n_kj n_kjᴴ over the inputs j     [Akcay2008, (3)]
+    def part(self, lines: slice) -> "Noise":
+        """The noise of some of the lines."""
+        return Noise(self.weights[lines], None if self.covariance is None else self.covariance[lines])
 
-        With φ_i in place of z^i on both sides the singular values and the subspace stay the same.
+    def gram(self, values: ComplexArray) -> FloatArray:
+        """Re Σ_k R_k ⊗ φ(z_k) φ(z_k)ᴴ for φ (q, F): (n_y, q, q), one an output, or (n_y q, n_y q) when correlated.
+
+        R_k is the mean of E n_kj n_kjᴴ over the inputs j [Akcay2008, (3)].
         """
-        if self.covariance is None and np.ptp(self.weights) == 0:
-            return None
-        values = polynomials.values
-        if self.covariance is None:
-            variances = np.sum(self.weights**-2.0, axis=2).T
-            scaled = values * np.sqrt(variances)[:, None, :]
-            return _cholesky(_gram(scaled))
         size, (count, n_y, n_u) = len(values), self.weights.shape
-        between = np.einsum("kajbj->kab", self.covariance.reshape(count, n_y, n_u, n_y, n_u))
+        if self.covariance is None:
+            deviations = np.sqrt(np.mean(self.weights**-2.0, axis=2)).T
+            real = np.ascontiguousarray(values * deviations[:, None, :]).view(np.float64)
+            return np.asarray(real @ np.swapaxes(real, -1, -2))
+        between = np.einsum("kajbj->kab", self.covariance.reshape(count, n_y, n_u, n_y, n_u)) / n_u
         pairs = (values[:, None, :] * values.conj()).reshape(-1, count)
-        gram = np.real(pairs @ between.reshape(count, -1)).reshape(size, size, n_y, n_y)
-        return _cholesky(gram.transpose(2, 0, 3, 1).reshape(n_y * size, n_y * size) / count)
+        blocks = np.real(pairs @ between.reshape(count, -1)).reshape(size, size, n_y, n_y)
+        return np.asarray(blocks.transpose(2, 0, 3, 1).reshape(n_y * size, n_y * size))
+
+    def factors(self, values: ComplexArray) -> FloatArray | None:
+        """K for polynomials φ (q, F) that are orthonormal on the lines; None for K = I, where the noise is equal."""
+        return None if self.equal else root_of(self.gram(values) / values.shape[1])
+
+
+def root_of(gram: FloatArray) -> FloatArray:
+    """K, lower triangular, K Kᵀ = Re Σ_k R_k ⊗ φ φᴴ [Akcay2008, (3)].
+
+    With φ_i in place of z^i here and in the data the singular values and the subspace stay the same.
+    Raises MisuseError where the variances leave too few lines.
+    """
+    try:
+        return np.asarray(np.linalg.cholesky(gram))
+    except np.linalg.LinAlgError:
+        raise MisuseError(
+            "the variances differ so much that few lines carry all weight; leave out lines that are known too badly,"
+            " use fewer block rows or the weighting 'equal'",
+            "variance",
+        ) from None
+
+
+def divide(factors: FloatArray, rows: FloatArray) -> FloatArray:
+    """K⁻¹ X for X (n_y q, c)."""
+    if factors.ndim == 2:
+        return np.asarray(solve_triangular(factors, rows, lower=True))
+    parts = zip(factors, np.split(rows, len(factors)), strict=True)
+    return np.concatenate([solve_triangular(factor, part, lower=True) for factor, part in parts])
 
 
 def multiply(factors: FloatArray | None, rows: FloatArray) -> FloatArray:
@@ -74,20 +106,3 @@ def multiply(factors: FloatArray | None, rows: FloatArray) -> FloatArray:
     if factors.ndim == 3:
         return np.asarray(factors @ rows)
     return np.asarray(factors @ rows.reshape(len(factors), -1)).reshape(rows.shape)
-
-
-def _gram(scaled: ComplexArray) -> FloatArray:
-    """Re X Xᴴ / F for X (…, q, F)."""
-    real = np.ascontiguousarray(scaled).view(np.float64)
-    return np.asarray(real @ np.swapaxes(real, -1, -2) / scaled.shape[-1])
-
-
-def _cholesky(gram: FloatArray) -> FloatArray:
-    try:
-        return np.asarray(np.linalg.cholesky(gram))
-    except np.linalg.LinAlgError:
-        raise MisuseError(
-            "the variances differ so much that few lines carry all weight; leave out lines that are known too badly,"
-            " use fewer block rows or the weighting 'equal'",
-            "variance",
-        ) from None

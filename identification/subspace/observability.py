@@ -8,10 +8,12 @@ from scipy.linalg import solve_triangular
 from identification.arrays import ComplexArray, FloatArray
 from identification.errors import NotIdentifiableError
 from identification.subspace.dominant import dominant_left_vectors
-from identification.subspace.noise import Noise, multiply
+from identification.subspace.noise import Noise, divide, multiply, root_of
 from identification.subspace.polynomials import OrthonormalPolynomials
+from identification.subspace.streaming import compressed_rows, representative_polynomials
 from identification.subspace.transition import Stability, Transition, projected, transition_matrix
 
+MANY = 1 << 21  # complex numbers in all rows: beyond, they are never formed at once
 COLUMNS = 1 << 13  # treated at a time, so that they stay in the cache
 
 
@@ -64,12 +66,19 @@ def observability_range(
         [Re W Im W; Re G Im G] = [R_11 0; R_21 R_22] Qᵀ,   K⁻¹ R_22 = U Σ Vᵀ,   O = K U_s   [Akcay2008, Algorithm 2]
 
     R_22 R_22ᵀ is that of the rows φ_i(z_k) Ĝ_k after the projection on the rows φ_i(z_k) I has been subtracted; no
-    factorisation of all rows is needed. `unweighted` takes K = I with the powers z^i.
+    factorisation of all rows is needed. Very many lines are compressed block by block. `unweighted` takes K = I with
+    the powers z^i.
     """
-    polynomials = OrthonormalPolynomials.on(z, block_rows)
     n_y = response.shape[1]
-    factors = _powers(polynomials.shift, n_y) if unweighted else noise.factors(polynomials)
-    rows = _projected_rows(polynomials.values, factors, response)
+    if block_rows * response.size > MANY:
+        polynomials = representative_polynomials(z, block_rows)
+        rows, gram = compressed_rows(polynomials, z, response, noise)
+        factors: FloatArray | None = _powers(polynomials.shift, n_y) if unweighted else root_of(gram)
+        rows = divide(np.asarray(factors), rows)
+    else:
+        polynomials = OrthonormalPolynomials.on(z, block_rows)
+        factors = _powers(polynomials.shift, n_y) if unweighted else noise.factors(polynomials.values)
+        rows = _projected_rows(polynomials.values, factors, response)
     vectors, sizes = dominant_left_vectors(rows, min(count, len(rows)))
     columns = multiply(factors, vectors.reshape(n_y, block_rows, -1))
     return ObservabilityRange(columns, sizes, polynomials.shift)

@@ -47,6 +47,15 @@ class OrthonormalPolynomials:
                 np.divide(following, norm, out=values[i + 1])
         return cls(values, shift)
 
+    def elsewhere(self, z: ComplexArray) -> ComplexArray:
+        """The same polynomials on other lines z (F',), by their recursion, as (q, F')."""
+        values = np.empty((len(self.shift), len(z)), dtype=np.complex128)
+        values[0] = 1.0
+        for i in range(len(self.shift) - 1):
+            following = z * values[i] - self.shift[: i + 1, i] @ values[: i + 1]
+            np.divide(following, self.shift[i + 1, i], out=values[i + 1])
+        return values
+
 
 def _orthogonalise(vector: ComplexArray, basis: ComplexArray) -> FloatArray:
     """Subtracts the projection of a vector (F,) on an orthonormal basis (i, F) in place; its coefficients (i,)."""

@@ -105,14 +105,14 @@ def test_k_of_noise_against_its_definition():
     root = g.standard_normal((30, 6, 8)) + 1j * g.standard_normal((30, 6, 8))
     covariance = root @ root.conj().swapaxes(1, 2)
     variance = np.diagonal(covariance, axis1=1, axis2=2).real.reshape(30, 3, 2)
-    k = Noise(variance**-0.5, covariance).factors(polynomials)
-    sums = sum(covariance.reshape(30, 3, 2, 3, 2)[:, :, j, :, j] for j in range(2))
+    k = Noise(variance**-0.5, covariance).factors(polynomials.values)
+    sums = sum(covariance.reshape(30, 3, 2, 3, 2)[:, :, j, :, j] / 2 for j in range(2))
     phi = polynomials.values
     wanted = sum(np.kron(sums[i], np.outer(phi[:, i], phi[:, i].conj())).real for i in range(30)) / 30
     assert np.allclose(k @ k.T, wanted)
-    separate = Noise(variance**-0.5).factors(polynomials)
+    separate = Noise(variance**-0.5).factors(polynomials.values)
     for output in range(3):
-        wanted = np.real((phi * variance.sum(axis=2)[:, output]) @ phi.conj().T) / 30
+        wanted = np.real((phi * variance.mean(axis=2)[:, output]) @ phi.conj().T) / 30
         assert np.allclose(separate[output] @ separate[output].T, wanted)
 
 
@@ -121,4 +121,4 @@ def test_variances_that_leave_too_few_lines():
     variance = np.full((20, 1, 1), 1e-30)
     variance[0] = 1.0
     with pytest.raises(MisuseError, match="differ so much"):
-        Noise(variance**-0.5).factors(OrthonormalPolynomials.on(z, 6))
+        Noise(variance**-0.5).factors(OrthonormalPolynomials.on(z, 6).values)
