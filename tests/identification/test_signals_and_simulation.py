@@ -167,7 +167,6 @@ def test_methods_for_one_input_and_output_refuse_more():
     for call in (
         lambda: RationalFit("absolute").estimate(structure, data),
         lambda: levy(structure, data),
-        lambda: inspect(data),
         lambda: residual_and_jacobian(structure, np.ones(2), data),
     ):
         with pytest.raises(MisuseError, match="one channel at a time") as raised:
