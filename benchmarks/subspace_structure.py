@@ -115,13 +115,15 @@ def compare(data: FrequencyResponse) -> tuple[list[dict[str, Any]], dict[str, Co
 
 
 def orders_of(data: FrequencyResponse, highest: int) -> dict[str, Any]:
-    """The tables of orders of both subspace methods, and the order that the first one chooses."""
+    """The tables of orders of both subspace methods, and the orders that they and the singular values choose."""
     first = EquidistantSubspace(max_order=highest, stability="projection").estimate(data)
     second = FrequencySubspace(max_order=highest, stability="projection").estimate(data)
     tables = {
         name: [vars(trial) for trial in found.orders] for name, found in (("McKelvey 1", first), ("McKelvey 2", second))
     }
-    return {"chosen": {"McKelvey 1": first.model.order, "McKelvey 2": second.model.order}, "tables": tables}
+    gap = FrequencySubspace(max_order=highest, order_rule="singular_values").estimate(data)
+    chosen = {"McKelvey 1": first.model.order, "McKelvey 2": second.model.order, "singular values": gap.model.order}
+    return {"chosen": chosen, "tables": tables}
 
 
 def picture(data: FrequencyResponse, models: dict[str, ComplexArray], orders: dict[str, Any]) -> go.Figure:

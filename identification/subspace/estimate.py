@@ -1,7 +1,7 @@
 """What the subspace estimators return, and the steps that they share."""
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Literal, Protocol
 
 import numpy as np
 
@@ -17,10 +17,13 @@ from identification.subspace.noise import Noise, Weighting
 from identification.subspace.observability import ObservabilityRange
 from identification.subspace.transition import Stability, Transition
 
+OrderRule = Literal["held_out", "singular_values"]
+
 MOST_ORDERS = 20
 AS_GOOD = 1.05
 ROUNDING = 1e-10
 NOTHING = 1e-14
+EXTREME = 1e100
 
 
 @dataclass(frozen=True)
@@ -72,6 +75,10 @@ class Method(Protocol):
         """The highest order in the table."""
 
     @property
+    def order_rule(self) -> OrderRule:
+        """How the order is chosen."""
+
+    @property
     def order_table(self) -> bool:
         """Whether to make the table for a given order too."""
 
@@ -118,13 +125,14 @@ def estimate(method: Method, data: FrequencyResponse) -> SubspaceEstimate:
     _check(method)
     if np.any(np.diff(data.frequencies) < 0):
         data = data.lines(np.argsort(data.frequencies))
-    if not np.any(data.response):
-        raise RangeError("the response is zero at every frequency; check the measurement", "response")
+    size = _size(data)
     trials: tuple[OrderTrial, ...] = ()
     order = method.order
-    if order is None or method.order_table:
+    if method.order_table or (order is None and method.order_rule == "held_out"):
         trials = order_table(method, data)
-        order = chosen_order(trials, data) if order is None else order
+    if order is None:
+        by_gap = method.order_rule == "singular_values"
+        order = order_at_gap(method, data) if by_gap else chosen_order(trials, data)
     block_rows = _block_rows(method, order, data)
     domain, noise = method.domain(data), Noise.of(data, method.weighting)
     found = method.observability(domain.z, data, noise, block_rows, order)
@@ -133,7 +141,6 @@ def estimate(method: Method, data: FrequencyResponse) -> SubspaceEstimate:
     errors = _errors(a, b, c, d, domain.z, data)
     model = domain.model(a, b, c, d)
     rms = float(np.sqrt(np.mean(errors**2)))
-    size = float(np.linalg.norm(data.response) / np.sqrt(len(data)))
     outcome = Outcome("converged", _advice(model, found.singular_values), 1)
     return SubspaceEstimate(
         model,
@@ -165,8 +172,7 @@ def order_table(method: Method, data: FrequencyResponse) -> tuple[OrderTrial, ..
     used, held_out = data.lines(slice(0, None, 2)), data.lines(slice(1, None, 2))
     if len(held_out) == 0:
         raise NotIdentifiableError("one line cannot show an order; measure more frequencies", "frequencies")
-    most = method.most_orders(method.block_rows, used)
-    highest = min(MOST_ORDERS, most) if method.max_order is None else method.max_order
+    highest = _highest_order(method, used)
     block_rows = _block_rows(method, highest, used)
     # The bilinear map has to be the same for both halves.
     every = method.domain(data).z
@@ -199,8 +205,34 @@ def order_table(method: Method, data: FrequencyResponse) -> tuple[OrderTrial, ..
 def chosen_order(trials: tuple[OrderTrial, ...], data: FrequencyResponse) -> int:
     """The lowest order whose error on held-out lines is within 5 % of the least, or as small as rounding errors."""
     least = min(trial.held_out_rms_error for trial in trials)
-    rounding = ROUNDING * float(np.linalg.norm(data.response)) / np.sqrt(len(data))
+    rounding = ROUNDING * _size(data)
     return next(trial.order for trial in trials if trial.held_out_rms_error <= max(AS_GOOD * least, rounding))
+
+
+def order_at_gap(method: Method, data: FrequencyResponse) -> int:
+    """The order n with the largest ratio σ_n/σ_{n+1} of singular values [Akcay2008, Algorithms 1 and 2, step 4 or 5]."""
+    highest = _highest_order(method, data)
+    domain, noise = method.domain(data), Noise.of(data, method.weighting)
+    found = method.observability(domain.z, data, noise, _block_rows(method, highest, data), highest)
+    sizes = np.maximum(found.singular_values, NOTHING * found.singular_values[0])
+    ratios = sizes[:-1] / sizes[1:]
+    return int(np.argmax(ratios[:highest])) + 1
+
+
+def _highest_order(method: Method, data: FrequencyResponse) -> int:
+    if method.max_order is not None:
+        return method.max_order
+    return min(max(MOST_ORDERS, method.order or 0), method.most_orders(method.block_rows, data))
+
+
+def _size(data: FrequencyResponse) -> float:
+    """√(1/F Σ ‖Ĝ_k‖_F²); raises RangeError where it cannot be computed with."""
+    largest = float(abs(data.response).max())
+    if largest == 0:
+        raise RangeError("the response is zero at every frequency; check the measurement", "response")
+    if not 1 / EXTREME < largest < EXTREME:
+        raise RangeError(f"the response is of size {largest:.1g}; state it in other units", "response")
+    return float(np.linalg.norm(data.response) / np.sqrt(len(data)))
 
 
 def _check(method: Method) -> None:

@@ -9,7 +9,7 @@ from identification.arrays import ComplexArray
 from identification.errors import NotIdentifiableError
 from identification.signals import FrequencyResponse
 from identification.subspace.domain import Domain
-from identification.subspace.estimate import SubspaceEstimate, estimate
+from identification.subspace.estimate import OrderRule, SubspaceEstimate, estimate
 from identification.subspace.noise import Noise, Weighting
 from identification.subspace.observability import ObservabilityRange, observability_range
 from identification.subspace.transition import Stability, Transition
@@ -33,7 +33,8 @@ class FrequencySubspace:
     kind: ClassVar[str] = "frequency_subspace"
     data: ClassVar[type] = FrequencyResponse
 
-    order: Annotated[int | None, "number of states; none: chosen by the error on held-out lines"] = None
+    order: Annotated[int | None, "number of states; none: chosen"] = None
+    order_rule: Annotated[OrderRule, "error on held-out lines, or largest gap of the singular values"] = "held_out"
     max_order: Annotated[int | None, "highest order tried"] = None
     order_table: Annotated[bool, "judge all orders on held-out lines even when the order is stated"] = False
     block_rows: Annotated[int | None, "q, block rows of the observability matrix, more than the order"] = None
@@ -49,7 +50,7 @@ class FrequencySubspace:
         return cls(order=2, block_rows=5)
 
     def estimate(self, data: FrequencyResponse) -> SubspaceEstimate:
-        """The model with its errors, and with the table of orders where the order is not stated.
+        """The model with its errors, and with the table of orders where it was needed or asked for.
 
         Raises RangeError for q ≤ n, NotIdentifiableError for fewer than n + q lines or an order that the data do not
         show, and MisuseError for a weighting or a time domain that the data do not fit.

@@ -8,10 +8,12 @@ import numpy as np
 from scipy.linalg import solve_triangular
 
 from identification.arrays import ComplexArray, FloatArray
-from identification.errors import MisuseError
+from identification.errors import MisuseError, RangeError
 from identification.signals import FrequencyResponse
 
 Weighting = Literal["automatic", "variance", "equal", "none"]
+
+EXTREME = 1e30
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,6 +31,11 @@ class Noise:
                 "the frequency response carries no variance; give one or use the weighting 'equal'", "weighting"
             )
         shape = data.matrices.shape
+        if weighting != "equal" and data.variance is not None and data.variance.max() / EXTREME > data.variance.min():
+            raise RangeError(
+                f"the variances differ by more than a factor {EXTREME:.0g}; leave out lines that are known too badly",
+                "variance",
+            )
         if weighting in ("equal", "none") or data.variance is None:
             return cls(np.ones(shape))
         # Only ratios matter: scaled so that squares neither overflow nor vanish.

@@ -161,11 +161,19 @@ def test_the_order_is_chosen_on_held_out_lines():
     assert held_out[5] == pytest.approx(np.sqrt(np.mean(errors**2)), rel=0.05)
 
 
+def test_the_order_is_where_the_singular_values_fall():
+    _, data = measured(order=6, deviation=0.01, count=120)
+    estimate = FrequencySubspace(max_order=10, order_rule="singular_values").estimate(data)
+    assert estimate.model.order == 6
+    assert estimate.orders == ()
+
+
 def test_the_order_of_noise_free_data():
     system = random_system(np.random.default_rng(9), 5, 2, 1, 1.0)
-    estimate = FrequencySubspace().estimate(exact(system, np.linspace(0.01, 3.1, 60)))
-    assert estimate.model.order == 5
-    assert estimate.relative_error < 1e-10
+    for rule in ("held_out", "singular_values"):
+        estimate = FrequencySubspace(order_rule=rule).estimate(exact(system, np.linspace(0.01, 3.1, 60)))
+        assert estimate.model.order == 5
+        assert estimate.relative_error < 1e-10
 
 
 def test_a_higher_order_than_the_data_have_is_pointed_out():
@@ -201,6 +209,31 @@ def test_misuse(method, error, field):
     assert raised.value.field == field
 
 
-def test_a_response_of_zeros_is_refused():
-    with pytest.raises(RangeError, match="zero at every frequency"):
-        FrequencySubspace(order=1).estimate(FrequencyResponse([1.0, 2.0, 3.0], np.zeros(3), (0.0,), 1.0))
+@pytest.mark.parametrize(
+    ("response", "variance", "text"),
+    [
+        (np.zeros(5), None, "zero at every frequency"),
+        (np.full(5, 1e200), None, "other units"),
+        (np.full(5, 1e-200), None, "other units"),
+        (np.ones(5), [1.0, 1.0, 1.0, 1.0, 1e-200], "differ by more"),
+    ],
+)
+def test_values_that_cannot_be_computed_with(response, variance, text):
+    data = FrequencyResponse(np.linspace(0.1, 3, 5), response, (0.0,), 1.0, variance)
+    with pytest.raises(RangeError, match=text):
+        FrequencySubspace(order=1).estimate(data)
+
+
+def test_the_model_scales_with_the_units_of_the_response():
+    _, data = measured()
+    scaled = FrequencyResponse(data.frequencies, 1e60 * data.response, (0.0,), 1.0, 1e120 * data.variance)
+    one, other = (FrequencySubspace(order=4).estimate(d).model for d in (data, scaled))
+    assert np.allclose(other.frequency_response(BETWEEN), 1e60 * one.frequency_response(BETWEEN), rtol=1e-8)
+
+
+def test_the_table_of_a_stated_order():
+    _, data = measured(count=120)
+    estimate = FrequencySubspace(order=4, order_table=True, max_order=6).estimate(data)
+    assert estimate.model.order == 4
+    assert [trial.order for trial in estimate.orders] == [1, 2, 3, 4, 5, 6]
+    assert FrequencySubspace(order=4).estimate(data).orders == ()
