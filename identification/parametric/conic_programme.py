@@ -4,7 +4,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Literal
 
-import clarabel
 import numpy as np
 from scipy.sparse import csc_matrix
 
@@ -73,9 +72,13 @@ def minimised_misfit(blocks: Blocks) -> ConicSolution:
     right = np.concatenate([part.right for part in parts])
     cost = np.zeros(count + 1)
     cost[-1] = 1.0
-    solution = clarabel.DefaultSolver(
-        csc_matrix((count + 1, count + 1)), cost, csc_matrix(matrix), right, [p.cone for p in parts], _settings()
-    ).solve()
+    solution = (
+        _solver()
+        .DefaultSolver(
+            csc_matrix((count + 1, count + 1)), cost, csc_matrix(matrix), right, [p.cone for p in parts], _settings()
+        )
+        .solve()
+    )
     x = np.array(solution.x)
     free = np.einsum("n,njab->jab", x[:-1], unit_a)
     symmetric = np.einsum("n,nab->ab", x[:-1], unit_x) + zero_x[0]
@@ -103,7 +106,7 @@ def _misfit_cones(
     body = linear.transpose(0, 2, 3, 1).reshape(-1, count)
     rows = np.zeros((len(body) + 1, count + 1))
     rows[0, -1], rows[1:, :-1] = -1.0, -body
-    return [_Part(rows, np.concatenate([[0.0], fixed.ravel()]), clarabel.SecondOrderConeT(len(rows)))]
+    return [_Part(rows, np.concatenate([[0.0], fixed.ravel()]), _solver().SecondOrderConeT(len(rows)))]
 
 
 def _dilated(matrices: FloatArray) -> FloatArray:
@@ -121,14 +124,21 @@ def _semidefinite(linear: FloatArray, constant: FloatArray, identity: float) -> 
     scale = np.where(row == column, 1.0, np.sqrt(2.0))
     multiple = identity * (row == column)
     rows = np.column_stack([-(linear[:, row, column] * scale).T, -multiple])
-    return _Part(rows, constant[row, column] * scale, clarabel.PSDTriangleConeT(size))
+    return _Part(rows, constant[row, column] * scale, _solver().PSDTriangleConeT(size))
 
 
 def _settings() -> Any:
-    settings = clarabel.DefaultSettings()
+    settings = _solver().DefaultSettings()
     settings.verbose = False
     settings.max_iter = 200
     settings.max_threads = 1
     settings.presolve_enable = False
     settings.chordal_decomposition_enable = False
     return settings
+
+
+def _solver() -> Any:
+    """The conic solver, loaded with the first problem only."""
+    import clarabel
+
+    return clarabel
