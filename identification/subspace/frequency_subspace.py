@@ -9,9 +9,11 @@ from identification.arrays import ComplexArray
 from identification.errors import NotIdentifiableError
 from identification.signals import FrequencyResponse
 from identification.subspace.domain import Domain
-from identification.subspace.estimate import OrderRule, SubspaceEstimate, estimate
+from identification.subspace.estimate import estimate
+from identification.subspace.method import OrderRule
 from identification.subspace.noise import Noise, Weighting
 from identification.subspace.observability import ObservabilityRange, observability_range
+from identification.subspace.result import SubspaceEstimate
 from identification.subspace.transition import Stability, Transition
 
 

@@ -17,7 +17,7 @@ from identification.registry import discover
 from identification.scheduling import ParameterDependence, ProductBasis, SchedulingVariable
 from identification.signals import FrequencyResponse, TimeRecord
 from identification.simulation import simulate
-from identification.subspace.estimate import SubspaceEstimate
+from identification.subspace.result import SubspaceEstimate
 from tests.support.state_space import noisy, random_system, relative_error
 
 BASES = discover(identification.bases)
