@@ -6,11 +6,13 @@ import numpy as np
 from scipy.linalg import cholesky, solve_triangular
 
 from identification.arrays import FloatArray
-from identification.parametric.conic_programme import Blocks, ConicSolution, Misfit, minimised_misfit
+from identification.parametric.conic_programme import Blocks, Misfit, minimised_misfit
 from identification.parametric.equations import ShiftEquations
 from identification.parametric.triangular import triangular_factor
 from identification.pole_regions.inequality import PoleRegion
 
+ROUNDS = 8
+WORTH_IT = 0.99  # a round must lower the misfit by this factor to be followed by another
 SLACK = 1.1  # the first problem asks for a little more margin, so that its solution starts the second one inside
 
 
@@ -38,26 +40,64 @@ def constrained_dynamics(
     [Kergus2019, (21)–(24)] with X ⪰ I to fix the scale. `functions` (V, J): the basis functions of A at the operating
     points of the inequality. `misfit` "spectral" takes the largest singular value over the operating points, as (23)
     does; "frobenius" the sum of squares that the unconstrained problem (15) has. A second problem keeps this X and
-    minimises ‖Ψ A_aug − Δ_aug‖ itself, without the weight X. Solved in a state basis in which Σ Ω_mᵀ Ω_m = I, with A
+    minimises ‖Ψ A_aug − Δ_aug‖ itself, without the weight X; both are repeated with the misfit of the first weighted by
+    X⁻¹ of the round before, while that helps. Solved in a state basis in which Σ Ω_mᵀ Ω_m = I, with A
     in units of its size and functions of the operating point that are orthonormal.
     """
     scaled = _Scaled.of(equations, functions)
     scale = float(np.linalg.norm(scaled.normalised.delta_stacked, 2)) or 1.0
     inequality = Inequality(*region.matrices, scaled.functions).scaled(scale)
     normalised = replace(scaled.normalised, delta=scaled.normalised.delta / scale)
-    first = minimised_misfit(_weighted_by_x(normalised, inequality.with_margin(SLACK * margin / scale), misfit))
-    factor = _root(first)
+    found = _searched(normalised, inequality, margin / scale, misfit)
+    inverse = np.asarray(solve_triangular(found.factor, np.eye(len(found.factor)), lower=True))
+    certificate = np.linalg.eigvalsh(inequality.value(found.normal, np.eye(len(inverse))))[:, -1].max()
+    dynamics = scaled.restored(scale * found.factor @ found.normal @ inverse)
+    return ConstrainedDynamics(dynamics, scale * float(certificate), found.iterations, found.solved)
+
+
+@dataclass(frozen=True, eq=False)
+class _Found:
+    """L⁻¹ A_j L (J, n, n) and L (n, n), with the misfit that they leave."""
+
+    normal: FloatArray
+    factor: FloatArray
+    misfit: float
+    iterations: int
+    solved: bool
+
+
+def _searched(equations: ShiftEquations, inequality: "Inequality", margin: float, misfit: Misfit) -> _Found:
+    """Rounds of both problems, each weighted by X⁻¹ of the one before, while they lower the misfit."""
+    n = equations.order
+    best = _Found(equations.dynamics(), np.eye(n), np.inf, 0, False)
+    iterations = 0
+    for _ in range(ROUNDS):
+        joint = minimised_misfit(_problem(equations, best.factor, inequality.with_margin(SLACK * margin), misfit, True))
+        iterations += joint.iterations
+        if not joint.solved:
+            break
+        factor = best.factor @ np.asarray(cholesky(joint.symmetric, lower=True))
+        factor = factor / np.linalg.norm(factor, 2)
+        fixed = minimised_misfit(_problem(equations, factor, inequality.with_margin(margin), misfit, False))
+        iterations += fixed.iterations
+        if not fixed.solved or fixed.misfit > WORTH_IT * best.misfit:
+            break
+        best = _Found(fixed.free, factor, fixed.misfit, iterations, True)
+    return replace(best, iterations=iterations)
+
+
+def _problem(
+    equations: ShiftEquations, factor: FloatArray, inequality: "Inequality", misfit: Misfit, unknown_x: bool
+) -> Blocks:
+    """min ‖(Ω_m L Ã(p_m) − Δ_m L X) L⁻¹‖ in Ã, and in X where it is unknown, else for X = I."""
+    size = (equations.functions_a.shape[1], equations.order)
+    turned = replace(equations, omega=equations.omega @ factor, delta=equations.delta @ factor)
     inverse = np.asarray(solve_triangular(factor, np.eye(len(factor)), lower=True))
-    second = minimised_misfit(_with_fixed_x(normalised, factor, inequality.with_margin(margin / scale), misfit))
-    start = first.free if first.solved else normalised.dynamics() @ factor @ factor.T
-    normal = second.free if second.solved else inverse @ start @ inverse.T
-    certificate = float(np.linalg.eigvalsh(inequality.value(normal, np.eye(len(factor))))[:, -1].max())
-    return ConstrainedDynamics(
-        scaled.restored(scale * factor @ normal @ inverse),
-        scale * certificate,
-        first.iterations + second.iterations,
-        first.solved or second.solved,
-    )
+
+    def residuals(a: FloatArray, x: FloatArray) -> FloatArray:
+        return np.asarray(_residuals(turned, misfit, a, x) @ inverse)
+
+    return Blocks(size, misfit, residuals, inequality.value, unknown_x)
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,30 +147,6 @@ class _Scaled:
         """A_1 … A_J in the basis and for the functions that were given."""
         mixed = np.linalg.solve(self.mixing, dynamics.reshape(len(dynamics), -1)).reshape(dynamics.shape)
         return np.asarray(np.linalg.solve(self.root, mixed @ self.root))
-
-
-def _root(solution: ConicSolution) -> FloatArray:
-    """L of X = L Lᵀ, or I where the solver found no X."""
-    size = len(solution.symmetric)
-    return np.asarray(cholesky(solution.symmetric, lower=True)) if solution.solved else np.eye(size)
-
-
-def _weighted_by_x(equations: ShiftEquations, inequality: Inequality, misfit: Misfit) -> Blocks:
-    """The problem in Ã and X."""
-    size = (equations.functions_a.shape[1], equations.order)
-    return Blocks(size, misfit, lambda a, x: _residuals(equations, misfit, a, x), inequality.value, symmetric=True)
-
-
-def _with_fixed_x(equations: ShiftEquations, factor: FloatArray, inequality: Inequality, misfit: Misfit) -> Blocks:
-    """The problem in L⁻¹ A(p) L for X = L Lᵀ."""
-    size = (equations.functions_a.shape[1], equations.order)
-    turned = replace(equations, omega=equations.omega @ factor)
-    inverse = np.asarray(solve_triangular(factor, np.eye(len(factor)), lower=True))
-
-    def residuals(a: FloatArray, x: FloatArray) -> FloatArray:
-        return _residuals(turned, misfit, a @ inverse, x)
-
-    return Blocks(size, misfit, residuals, inequality.value, symmetric=False)
 
 
 def _residuals(equations: ShiftEquations, misfit: Misfit, a: FloatArray, x: FloatArray) -> FloatArray:

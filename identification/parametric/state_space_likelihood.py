@@ -175,7 +175,7 @@ def _real(gradient: ComplexArray) -> FloatArray:
 
 
 def _rank(jacobian: FloatArray) -> int:
-    return _chart(jacobian).shape[1]
+    return len(_chart(jacobian).T)
 
 
 def _freedom(model: ParameterVaryingStateSpace, experiments: Sequence[FrequencyResponse]) -> int:
