@@ -12,6 +12,7 @@ from identification.errors import NotIdentifiableError, ShapeError
 
 FEW = 3000
 SINGULAR = 1e-12
+LEAST_WEIGHT = 1e-4  # of the largest
 
 
 @dataclass(frozen=True)
@@ -71,6 +72,20 @@ def _require_counts(counts: Sequence[int], order: int, blocks: int, outputs: int
 def canonical(observability: FloatArray, rows: CanonicalRows) -> FloatArray:
     """O (S O)⁻¹."""
     return np.asarray(np.linalg.solve(observability[list(rows.indices)].T, observability.T).T)
+
+
+def misfit_weight(
+    observabilities: Sequence[FloatArray], singular_values: Sequence[FloatArray], rows: CanonicalRows
+) -> FloatArray:
+    """M (n, n) of M Mᵀ = Σ S O_m Σ_m² (S O_m)ᵀ: a residual times M counts directions of the state as they show.
+
+    Noise turns the i-th singular vector by an angle that is inverse to its singular value.
+    """
+    factors = [
+        o[list(rows.indices)] * values[: o.shape[1]] for o, values in zip(observabilities, singular_values, strict=True)
+    ]
+    left, sizes, _ = np.linalg.svd(np.hstack(factors), full_matrices=False)
+    return np.asarray(left * np.maximum(sizes, LEAST_WEIGHT * sizes[0]))
 
 
 def _compositions(order: int, outputs: int) -> Iterator[tuple[int, ...]]:

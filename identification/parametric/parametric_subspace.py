@@ -10,7 +10,7 @@ from identification.arrays import ComplexArray, FloatArray
 from identification.errors import MisuseError, NotIdentifiableError, RangeError, ShapeError
 from identification.outcome import Outcome
 from identification.parameter_varying import ParameterVaryingStateSpace
-from identification.parametric.canonical_rows import canonical, choose_rows
+from identification.parametric.canonical_rows import canonical, choose_rows, misfit_weight
 from identification.parametric.conic_programme import Misfit
 from identification.parametric.equations import ShiftEquations, input_matrices, shift_equations
 from identification.parametric.estimate import (
@@ -95,8 +95,11 @@ class ParametricSubspace:
             [subspace.observability for subspace in subspaces], experiments[0].output_count, self.rows_per_output
         )
         shared = [canonical(subspace.observability, rows) for subspace in subspaces]
-        problem = _Problem(shift_equations(shared, basis, dependence, points), dependence, points, experiments, lines)
         singular_values = tuple(subspace.singular_values for subspace in subspaces)
+        weight = misfit_weight([s.observability for s in subspaces], singular_values, rows)
+        problem = _Problem(
+            shift_equations(shared, basis, dependence, points), dependence, points, experiments, lines, weight
+        )
         model = problem.model(problem.equations.dynamics())
         outcome, report = Outcome("converged", stability_advice(model), 1), None
         if self.region is not None:
@@ -110,7 +113,7 @@ class ParametricSubspace:
         corners = corners_suffice(basis, variables)
         places = grid(variables, 2 if corners else self.grid_count)
         functions = basis.evaluate(places, variables)
-        found = constrained_dynamics(problem.equations, region, self.margin, functions, self.misfit)
+        found = constrained_dynamics(problem.equations, region, self.margin, functions, self.misfit, problem.weight)
         model = problem.model(found.dynamics)
         report = RegionReport(
             "whole range" if corners else "grid",
@@ -138,6 +141,7 @@ class _Problem:
     points: FloatArray
     experiments: Sequence[FrequencyResponse]
     lines: Sequence[ComplexArray]
+    weight: FloatArray
 
     def model(self, dynamics: FloatArray) -> ParameterVaryingStateSpace:
         """The model with these A_j, its C, B and D by least squares."""

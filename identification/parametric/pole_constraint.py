@@ -31,24 +31,31 @@ class ConstrainedDynamics:
 
 
 def constrained_dynamics(
-    equations: ShiftEquations, region: PoleRegion, margin: float, functions: FloatArray, misfit: Misfit
+    equations: ShiftEquations,
+    region: PoleRegion,
+    margin: float,
+    functions: FloatArray,
+    misfit: Misfit,
+    weight: FloatArray,
 ) -> ConstrainedDynamics:
     """The best A(p) with f(λ) ⪯ −margin for all its poles wherever the inequality is imposed.
 
-        min ‖Ψ Ã_aug − Δ_aug X‖   s.t.   (P + margin I) ⊗ X + Q ⊗ Ã(p) + Qᵀ ⊗ Ã(p)ᵀ ⪯ 0,   X ⪰ I,   A_j = Ã_j X⁻¹
+        min ‖(Ψ Ã_aug − Δ_aug X) M‖   s.t.   (P + margin I) ⊗ X + Q ⊗ Ã(p) + Qᵀ ⊗ Ã(p)ᵀ ⪯ 0,   X ⪰ I,   A_j = Ã_j X⁻¹
 
     [Kergus2019, (21)–(24)] with X ⪰ I to fix the scale. `functions` (V, J): the basis functions of A at the operating
     points of the inequality. `misfit` "spectral" takes the largest singular value over the operating points, as (23)
     does; "frobenius" the sum of squares that the unconstrained problem (15) has. A second problem keeps this X and
     minimises ‖Ψ A_aug − Δ_aug‖ itself, without the weight X; both are repeated with the misfit of the first weighted by
-    X⁻¹ of the round before, while that helps. Solved in a state basis in which Σ Ω_mᵀ Ω_m = I, with A
+    X⁻¹ of the round before, while that helps. `weight` M (n, n) says how much each direction of the state counts (the
+    unconstrained solution does not depend on it). Solved in a state basis in which Σ Ω_mᵀ Ω_m = I, with A
     in units of its size and functions of the operating point that are orthonormal.
     """
     scaled = _Scaled.of(equations, functions)
     scale = float(np.linalg.norm(scaled.normalised.delta_stacked, 2)) or 1.0
     inequality = Inequality(*region.matrices, scaled.functions).scaled(scale)
     normalised = replace(scaled.normalised, delta=scaled.normalised.delta / scale)
-    found = _searched(normalised, inequality, margin / scale, misfit)
+    right = scaled.root @ weight
+    found = _searched(normalised, inequality, margin / scale, misfit, right / np.linalg.norm(right, 2))
     inverse = np.asarray(solve_triangular(found.factor, np.eye(len(found.factor)), lower=True))
     certificate = np.linalg.eigvalsh(inequality.value(found.normal, np.eye(len(inverse))))[:, -1].max()
     dynamics = scaled.restored(scale * found.factor @ found.normal @ inverse)
@@ -66,19 +73,23 @@ class _Found:
     solved: bool
 
 
-def _searched(equations: ShiftEquations, inequality: "Inequality", margin: float, misfit: Misfit) -> _Found:
+def _searched(
+    equations: ShiftEquations, inequality: "Inequality", margin: float, misfit: Misfit, right: FloatArray
+) -> _Found:
     """Rounds of both problems, each weighted by X⁻¹ of the one before, while they lower the misfit."""
     n = equations.order
     best = _Found(equations.dynamics(), np.eye(n), np.inf, 0, False)
     iterations = 0
     for _ in range(ROUNDS):
-        joint = minimised_misfit(_problem(equations, best.factor, inequality.with_margin(SLACK * margin), misfit, True))
+        joint = minimised_misfit(
+            _problem(equations, best.factor, inequality.with_margin(SLACK * margin), misfit, right, True)
+        )
         iterations += joint.iterations
         if not joint.solved:
             break
         factor = best.factor @ np.asarray(cholesky(joint.symmetric, lower=True))
         factor = factor / np.linalg.norm(factor, 2)
-        fixed = minimised_misfit(_problem(equations, factor, inequality.with_margin(margin), misfit, False))
+        fixed = minimised_misfit(_problem(equations, factor, inequality.with_margin(margin), misfit, right, False))
         iterations += fixed.iterations
         if not fixed.solved or fixed.misfit > WORTH_IT * best.misfit:
             break
@@ -87,15 +98,20 @@ def _searched(equations: ShiftEquations, inequality: "Inequality", margin: float
 
 
 def _problem(
-    equations: ShiftEquations, factor: FloatArray, inequality: "Inequality", misfit: Misfit, unknown_x: bool
+    equations: ShiftEquations,
+    factor: FloatArray,
+    inequality: "Inequality",
+    misfit: Misfit,
+    right: FloatArray,
+    unknown_x: bool,
 ) -> Blocks:
-    """min ‖(Ω_m L Ã(p_m) − Δ_m L X) L⁻¹‖ in Ã, and in X where it is unknown, else for X = I."""
+    """min ‖(Ω_m L Ã(p_m) − Δ_m L X) L⁻¹ M‖ in Ã, and in X where it is unknown, else for X = I."""
     size = (equations.functions_a.shape[1], equations.order)
     turned = replace(equations, omega=equations.omega @ factor, delta=equations.delta @ factor)
     inverse = np.asarray(solve_triangular(factor, np.eye(len(factor)), lower=True))
 
     def residuals(a: FloatArray, x: FloatArray) -> FloatArray:
-        return np.asarray(_residuals(turned, misfit, a, x) @ inverse)
+        return np.asarray(_residuals(turned, misfit, a, x) @ inverse @ right)
 
     return Blocks(size, misfit, residuals, inequality.value, unknown_x)
 
