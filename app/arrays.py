@@ -10,6 +10,7 @@ from identification.arrays import ComplexArray, FloatArray
 
 Vector = list[Double]
 Matrix = list[list[Double]]
+Matrices = list[Matrix]
 
 
 class ComplexVector(CamelModel):
@@ -32,6 +33,39 @@ class ComplexVector(CamelModel):
     def of(cls, values: ComplexArray) -> "ComplexVector":
         """The document of an array (F,)."""
         return cls(re=values.real.tolist(), im=values.imag.tolist())
+
+
+class ComplexMatrices(CamelModel):
+    """Complex matrices of one shape, one a frequency with a row for each output and a column for each input."""
+
+    re: Matrices = Field(description="real parts")
+    im: Matrices = Field(description="imaginary parts, as many as real parts")
+
+    @model_validator(mode="after")
+    def _same_shape(self) -> "ComplexMatrices":
+        shapes = matrices_shape(self.re, "re"), matrices_shape(self.im, "im")
+        if shapes[0] != shapes[1]:
+            raise ValueError(f"re has shape {shapes[0]} and im {shapes[1]}; give as many of each")
+        return self
+
+    def array(self) -> ComplexArray:
+        """The matrices as an array (F, n_y, n_u)."""
+        return np.array(self.re) + 1j * np.array(self.im)
+
+    @classmethod
+    def of(cls, values: ComplexArray) -> "ComplexMatrices":
+        """The document of an array (F, n_y, n_u)."""
+        return cls(re=values.real.tolist(), im=values.imag.tolist())
+
+
+def matrices_shape(values: Matrices, name: str) -> tuple[int, int, int]:
+    """(F, n_y, n_u); raises ValueError when there are none, or when they differ in shape."""
+    rows, columns = {len(matrix) for matrix in values}, {len(row) for matrix in values for row in matrix}
+    if len(rows) != 1 or len(columns) != 1 or 0 in rows | columns:
+        raise ValueError(
+            f"{name} holds no matrices, or matrices that differ in shape; give one row an output, one column an input"
+        )
+    return len(values), rows.pop(), columns.pop()
 
 
 def finite_or_none(value: float | None) -> float | None:

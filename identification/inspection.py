@@ -60,7 +60,8 @@ def inspect(measurement: TimeRecord | FrequencyResponse) -> RecordInspection | R
     """What a measurement shows, with warnings that say what to change.
 
     The period is stated or found by exact repetition of the input; the noise is what differs between steady periods.
-    Raises RangeError for records or responses of zeros, which cannot be a measurement.
+    Raises RangeError for records or responses of zeros, which cannot be a measurement. Responses with several inputs or
+    outputs are judged by the Frobenius norms of their matrices.
     """
     if isinstance(measurement, TimeRecord):
         return _inspect_record(measurement)
@@ -221,10 +222,11 @@ def _with_warnings(result: RecordInspection, record: TimeRecord) -> RecordInspec
 def _inspect_response(data: FrequencyResponse) -> ResponseInspection:
     if not data.response.any():
         raise RangeError("the response is zero at every frequency; check the measurement", "response")
-    size = abs(data.response)
+    size = np.linalg.norm(data.matrices, axis=(1, 2))
     relative = None
     if data.variance is not None:
-        relative = float(np.median(np.sqrt(data.variance)[size > 0] / size[size > 0]))
+        deviation = np.sqrt(data.variance.reshape(data.matrices.shape).sum(axis=(1, 2)))
+        relative = float(np.median(deviation[size > 0] / size[size > 0]))
     d = data.variance_degrees_of_freedom
     checks = (
         (data.variance is None, "No variance was given; the noise will be judged from the fit."),

@@ -6,7 +6,7 @@ from identification.arrays import FloatArray
 from identification.errors import MisuseError
 from identification.filtering import lfilter
 from identification.models import RationalStructure
-from identification.signals import FrequencyResponse, Measurement, TimeRecord
+from identification.signals import FrequencyResponse, Measurement, TimeRecord, require_one_channel
 
 
 def residual_and_jacobian(
@@ -78,6 +78,7 @@ def response_errors(
 
 def require_same_sampling(structure: RationalStructure, data: Measurement) -> None:
     """Raises MisuseError when a measurement cannot be held against a model of this structure."""
+    require_one_channel(data)
     if isinstance(data, TimeRecord) and (not structure.is_discrete or structure.delay):
         raise MisuseError(
             "a model in continuous time or with an estimated delay is fitted to frequency responses; estimate the"

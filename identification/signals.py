@@ -1,11 +1,11 @@
 """What was measured at one operating point: a time record or a frequency response."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from identification.arrays import ComplexArray, FloatArray, finite_complex, finite_floats
-from identification.errors import RangeError, ShapeError
+from identification.arrays import ComplexArray, FloatArray, IntArray, finite_complex, finite_floats
+from identification.errors import MisuseError, RangeError, ShapeError
 
 OperatingPoint = tuple[float, ...]
 
@@ -56,9 +56,13 @@ class TimeRecord:
 class FrequencyResponse:
     """A measured frequency response Ĝ(ω_k) = G(ω_k) + n_k, k = 1 … F, at a constant operating point.
 
-    `frequencies`: (F,) rad/s, distinct, ≥ 0; `response`: (F,); `sample_time` in seconds, None for continuous time;
-    `variance`: (F,) E|n_k|² of circular complex noise (real and imaginary part have half of it each), None when
-    unknown; `variance_degrees_of_freedom`: of its estimate, None when it is known exactly.
+    `frequencies`: (F,) rad/s, distinct, ≥ 0; `response`: (F,) with one input and one output, else (F, n_y, n_u);
+    `sample_time` in seconds, None for continuous time; `variance`: shaped as `response`, E|n_k|² of circular complex
+    noise (real and imaginary part have half of it each), None when unknown; `variance_degrees_of_freedom`: of its
+    estimate, None when it is known exactly. With several inputs or outputs `covariance` (F, n_y n_u, n_y n_u) may say
+    how the entries are correlated, E vec(n_k) vec(n_k)ᴴ, entries row by row; `variance` is then its diagonal.
+    Raises ShapeError for sizes that do not fit, RangeError for values that are not finite, repeated or negative
+    frequencies, frequencies above the Nyquist frequency, and covariances that are not Hermitian and positive definite.
     """
 
     frequencies: FloatArray
@@ -67,31 +71,104 @@ class FrequencyResponse:
     sample_time: float | None = None
     variance: FloatArray | None = None
     variance_degrees_of_freedom: float | None = None
+    covariance: ComplexArray | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "frequencies", finite_floats(self.frequencies, "frequencies"))
         object.__setattr__(self, "response", finite_complex(self.response, "response"))
-        _check_same_length(self.frequencies, self.response, "response")
+        _check_response(self.frequencies, self.response)
         _check_frequencies(self.frequencies, self.sample_time)
+        if self.covariance is not None:
+            covariance = finite_complex(self.covariance, "covariance")
+            _check_covariance(covariance, self.response)
+            object.__setattr__(self, "covariance", covariance)
+            diagonal = np.diagonal(covariance, axis1=-2, axis2=-1).real
+            object.__setattr__(self, "variance", diagonal.reshape(self.response.shape))
         if self.variance is not None:
             object.__setattr__(self, "variance", finite_floats(self.variance, "variance"))
-            _check_same_length(self.frequencies, self.variance, "variance")
-            if np.any(self.variance <= 0):
-                raise RangeError("a variance is zero or negative; give positive variances or none at all", "variance")
+            _check_variance(self.variance, self.response)
 
     def __len__(self) -> int:
         return len(self.frequencies)
+
+    @property
+    def matrices(self) -> ComplexArray:
+        """The response as (F, n_y, n_u), whatever the number of inputs and outputs."""
+        return self.response[:, None, None] if self.response.ndim == 1 else self.response
+
+    @property
+    def output_count(self) -> int:
+        """n_y."""
+        return int(self.matrices.shape[1])
+
+    @property
+    def input_count(self) -> int:
+        """n_u."""
+        return int(self.matrices.shape[2])
+
+    def channel(self, output: int, input: int) -> "FrequencyResponse":
+        """The response of one output to one input, with its variance, as a measurement of its own."""
+        variance = None if self.variance is None else self.variance.reshape(self.matrices.shape)[:, output, input]
+        return replace(self, response=self.matrices[:, output, input], variance=variance, covariance=None)
+
+    def lines(self, kept: slice | IntArray) -> "FrequencyResponse":
+        """The measurement at some of its lines only."""
+        variance = None if self.variance is None else self.variance[kept]
+        covariance = None if self.covariance is None else self.covariance[kept]
+        return replace(
+            self,
+            frequencies=self.frequencies[kept],
+            response=self.response[kept],
+            variance=variance,
+            covariance=covariance,
+        )
 
 
 Measurement = TimeRecord | FrequencyResponse
 
 
-def _check_same_length(frequencies: FloatArray, values: FloatArray | ComplexArray, field: str) -> None:
-    if frequencies.ndim != 1 or values.shape != frequencies.shape or len(frequencies) == 0:
-        raise ShapeError(
-            f"frequencies have shape {frequencies.shape} and {field} {values.shape}; give one value per frequency",
-            field,
+def require_one_channel(data: Measurement) -> None:
+    """Raises MisuseError for a response with an axis of inputs and outputs, where a method takes one of each only."""
+    if isinstance(data, FrequencyResponse) and data.response.ndim != 1:
+        raise MisuseError(
+            f"the response has {data.output_count} outputs and {data.input_count} inputs, this method takes one of"
+            " each; give one channel at a time or use a state-space method",
+            "response",
         )
+
+
+def _check_response(frequencies: FloatArray, response: ComplexArray) -> None:
+    if frequencies.ndim != 1 or response.ndim not in (1, 3) or response.size == 0 or len(response) != len(frequencies):
+        raise ShapeError(
+            f"frequencies have shape {frequencies.shape} and response {response.shape}; give one value, or one matrix"
+            " of outputs × inputs, per frequency",
+            "response",
+        )
+
+
+def _check_variance(variance: FloatArray, response: ComplexArray) -> None:
+    if variance.shape != response.shape:
+        raise ShapeError(
+            f"the response has shape {response.shape} and variance {variance.shape}; give one variance per value",
+            "variance",
+        )
+    if np.any(variance <= 0):
+        raise RangeError("a variance is zero or negative; give positive variances or none at all", "variance")
+
+
+def _check_covariance(covariance: ComplexArray, response: ComplexArray) -> None:
+    count, size = len(response), response[0].size
+    if response.ndim != 3 or covariance.shape != (count, size, size):
+        raise ShapeError(
+            f"the response has shape {response.shape} and covariance {covariance.shape}; give the variance of a single"
+            " input and output, or per frequency a square matrix with one row for each entry of the response",
+            "covariance",
+        )
+    scale = abs(covariance).max(axis=(-2, -1), keepdims=True)
+    if np.any(abs(covariance - np.conj(np.swapaxes(covariance, -1, -2))) > 1e-9 * scale):
+        raise RangeError("a covariance is not Hermitian; give E n nᴴ of the entries of the response", "covariance")
+    if np.any(np.linalg.eigvalsh(covariance)[:, 0] <= 0):
+        raise RangeError("a covariance is not positive definite; average more periods, or give variances", "covariance")
 
 
 def _check_frequencies(frequencies: FloatArray, sample_time: float | None) -> None:

@@ -6,12 +6,20 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from app.schemas.experiments import Experiment, TimeRecordRequest
-from app.schemas.experiments import FrequencyResponseRequest as ResponseRequest
+from app.schemas.experiments import (
+    Experiment,
+    ExperimentKind,
+    FrequencyResponseRequest,
+    MatrixFrequencyResponseRequest,
+    TimeRecordRequest,
+)
+from identification.errors import ShapeError
 from identification.signals import FrequencyResponse, Measurement, TimeRecord
 
+Request = TimeRecordRequest | FrequencyResponseRequest | MatrixFrequencyResponseRequest
 
-def requested_measurement(request: TimeRecordRequest | ResponseRequest) -> Measurement:
+
+def requested_measurement(request: Request) -> Measurement:
     """The measurement in the body of a request; raises MisuseError when it is none."""
     point = tuple(request.operating_point)
     if isinstance(request, TimeRecordRequest):
@@ -22,14 +30,40 @@ def requested_measurement(request: TimeRecordRequest | ResponseRequest) -> Measu
             point,
             request.period_samples,
         )
-    return FrequencyResponse(
-        np.array(request.frequencies_rad_per_second),
-        request.response.array(),
-        point,
-        request.sample_time_seconds,
-        None if request.variance is None else np.array(request.variance),
-        request.variance_degrees_of_freedom,
+    return plainest(
+        FrequencyResponse(
+            np.array(request.frequencies_rad_per_second),
+            request.response.array(),
+            point,
+            request.sample_time_seconds,
+            None if request.variance is None else np.array(request.variance),
+            request.variance_degrees_of_freedom,
+        )
     )
+
+
+def plainest(data: FrequencyResponse) -> FrequencyResponse:
+    """The measurement, with numbers in place of matrices when it has one input and one output."""
+    return data.channel(0, 0) if data.response.ndim > 1 and data.input_count == data.output_count == 1 else data
+
+
+def kind_of(data: Measurement) -> ExperimentKind:
+    """What sort of measurement this is."""
+    if isinstance(data, TimeRecord):
+        return "timeRecord"
+    return "frequencyResponse" if data.response.ndim == 1 else "matrixFrequencyResponse"
+
+
+def require_channels(data: Measurement, channels: tuple[int, int]) -> None:
+    """Raises ShapeError unless a measurement has this number of outputs and of inputs."""
+    found = (1, 1) if isinstance(data, TimeRecord) else (data.output_count, data.input_count)
+    if found != channels:
+        what = "record" if isinstance(data, TimeRecord) else "response"
+        raise ShapeError(
+            f"the {what} has {found[0]} outputs and {found[1]} inputs, the plant has {channels[0]} and {channels[1]};"
+            " give matrices with a row for each output and a column for each input of the plant",
+            "output" if isinstance(data, TimeRecord) else "response",
+        )
 
 
 def kept_measurement(experiment: Experiment, arrays: Mapping[str, NDArray[Any]]) -> Measurement:

@@ -3,13 +3,16 @@
 from app.arrays import finite_or_none
 from app.schemas.experiments import Understanding
 from identification.inspection import RecordInspection, ResponseInspection, inspect
-from identification.signals import Measurement
+from identification.signals import FrequencyResponse, Measurement
 
 
 def understanding(data: Measurement) -> Understanding:
     """The document of what a measurement shows; raises RangeError for records or responses of zeros."""
     seen = inspect(data)
-    return _of_record(seen) if isinstance(seen, RecordInspection) else _of_response(seen)
+    if isinstance(seen, RecordInspection):
+        return _of_record(seen)
+    assert isinstance(data, FrequencyResponse), "what is no record is a response"
+    return _of_response(seen, data)
 
 
 def _of_record(seen: RecordInspection) -> Understanding:
@@ -36,8 +39,10 @@ def _of_record(seen: RecordInspection) -> Understanding:
     )
 
 
-def _of_response(seen: ResponseInspection) -> Understanding:
+def _of_response(seen: ResponseInspection, data: FrequencyResponse) -> Understanding:
     return Understanding(
+        input_count=data.input_count,
+        output_count=data.output_count,
         frequency_count=seen.count,
         minimum_frequency_rad_per_second=seen.lowest_frequency,
         maximum_frequency_rad_per_second=seen.highest_frequency,

@@ -7,16 +7,11 @@ import numpy as np
 
 from app.arrays import ComplexVector, finite_list_or_none, finite_or_none
 from app.conversion.extremes import finite
-from app.conversion.plants import lpv_model, parameter_dependence, rational_structure
-from app.schemas.models import (
-    LocalModelDocument,
-    Model,
-    ModelRequest,
-    OutcomeDocument,
-    PolesAtPoint,
-    TestDocument,
-)
+from app.conversion.plants import lpv_model, parameter_dependence, rational_of
+from app.schemas.models import LocalModelDocument, Model, ModelRequest
+from app.schemas.outcomes import OutcomeDocument, PolesAtPoint, TestDocument
 from app.schemas.plants import CoefficientBasis, Plant, ProductBasisDocument, Structure
+from app.schemas.state_space import StateSpaceModelRequest
 from identification.arrays import FloatArray
 from identification.errors import RangeError
 from identification.estimates import LocalEstimate
@@ -29,7 +24,9 @@ POLE_POINTS = 101
 STABILITY_POINTS = 1000
 
 
-def chosen(plant: Plant, request: ModelRequest) -> tuple[Structure, ProductBasisDocument, list[CoefficientBasis]]:
+def chosen(
+    plant: Plant, request: ModelRequest | StateSpaceModelRequest
+) -> tuple[Structure, ProductBasisDocument, list[CoefficientBasis]]:
     """Structure, basis and exceptions of the model asked for: those of the plant unless the request has its own."""
     own = request.coefficient_bases
     if own is None:
@@ -40,14 +37,19 @@ def chosen(plant: Plant, request: ModelRequest) -> tuple[Structure, ProductBasis
 def requested_structure(plant: Plant, request: ModelRequest) -> tuple[RationalStructure, ParameterDependence]:
     """Structure and dependence of the model asked for."""
     document, basis, own = chosen(plant, request)
-    structure = rational_structure(document)
-    return structure, parameter_dependence(structure, plant.scheduling_variables, basis, own)
+    structure = rational_of(document)
+    return structure, parameter_dependence(structure.coefficient_names, plant.scheduling_variables, basis, own)
 
 
 def kept_model(model: Model, plant: Plant) -> LpvModel:
-    """The model of a document; one without a covariance is taken as exactly known."""
-    structure = rational_structure(model.structure)
-    dependence = parameter_dependence(structure, plant.scheduling_variables, model.basis, model.coefficient_bases)
+    """The model of a document; one without a covariance is taken as exactly known.
+
+    Raises MisuseError for a state-space model.
+    """
+    structure = rational_of(model.structure)
+    names = structure.coefficient_names
+    dependence = parameter_dependence(names, plant.scheduling_variables, model.basis, model.coefficient_bases)
+    assert model.noise_variance is not None, "rational models have one"
     return lpv_model(structure, dependence, model.theta, model.covariance, model.noise_variance)
 
 

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from app.files.table import MAX_EXPANDED_BYTES, MAX_MEMBERS, FileError, Table, named
+from app.files.table import MAX_EXPANDED_BYTES, MAX_MEMBERS, FileError, Table, may_be_read, named
 
 HEADER_BYTES = 128
 MAX_DEPTH = 8
@@ -39,7 +39,7 @@ def read(content: bytes, group: str = "") -> Table:
         )
     if len(arrays) > MAX_MEMBERS:
         raise FileError(f"the mat file has {len(arrays)} arrays, at most {MAX_MEMBERS} are read")
-    return named({name: array for name, array in arrays.items() if array.size == max(array.shape)})
+    return named({name: array for name, array in arrays.items() if may_be_read(name, array)})
 
 
 def _byte_order(content: bytes) -> str:

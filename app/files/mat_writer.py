@@ -18,12 +18,12 @@ def write(arrays: Mapping[str, NDArray[Any]]) -> bytes:
 
 
 def _matrix(name: str, array: NDArray[Any]) -> bytes:
-    shape = array.shape if array.ndim == 2 else (array.size, 1)
+    shape = array.shape if array.ndim >= 2 else (array.size, 1)
     is_complex = np.iscomplexobj(array)
     values = array.reshape(shape).ravel(order="F")
     parts = [
         _element(UINT32, struct.pack("<II", DOUBLE_CLASS | (COMPLEX_FLAG if is_complex else 0), 0)),
-        _element(INT32, struct.pack("<ii", *shape)),
+        _element(INT32, struct.pack(f"<{len(shape)}i", *shape)),
         _element(INT8, name.encode("ascii")),
         _element(DOUBLE, values.real.astype("<f8").tobytes()),
     ]

@@ -2,26 +2,30 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from app.files import csv_file, mat_file, npz_file
 from app.files.table import FileError, Table
 from identification.arrays import ComplexArray, FloatArray
 from identification.signals import FrequencyResponse, Measurement, OperatingPoint, TimeRecord
 
+Number = TypeVar("Number", np.float64, np.complex128)
 SAMPLE_TIME_TOLERANCE = 1e-3
 SHORTEST, LONGEST = 1e-15, 1e15  # sample times in seconds
 
 
 @dataclass(frozen=True)
 class Statements:
-    """What is stated beside the file; it goes before what the file says."""
+    """What is stated beside the file, which goes before what the file says; `channels`: the plant's outputs, inputs."""
 
     operating_point: OperatingPoint
     sample_time: float | None = None
     period: int | None = None
     group: str = ""
+    channels: tuple[int, int] = (1, 1)
 
 
 def read_measurement(content: bytes, file_format: str, stated: Statements) -> Measurement:
@@ -93,10 +97,10 @@ def _frequency_response(table: Table, stated: Statements) -> FrequencyResponse:
     found = _scalar(table, "sample_time")
     return FrequencyResponse(
         frequencies=omega,
-        response=_response(table),
+        response=matrices(_response(table), len(omega), stated.channels, "response"),
         operating_point=stated.operating_point,
         sample_time=stated.sample_time if stated.sample_time is not None else found,
-        variance=_real(table, "variance") if "variance" in table else None,
+        variance=_variance(table, len(omega), stated.channels),
         variance_degrees_of_freedom=_scalar(table, "degrees_of_freedom"),
     )
 
@@ -107,9 +111,33 @@ def _response(table: Table) -> ComplexArray:
     if "real" in table and "imaginary" in table:
         real, imaginary = _real(table, "real"), _real(table, "imaginary")
         if real.shape != imaginary.shape:
-            raise FileError(f"there are {len(real)} real and {len(imaginary)} imaginary parts")
+            raise FileError(f"the real parts have shape {real.shape}, the imaginary ones {imaginary.shape}")
         return np.asarray(real + 1j * imaginary)
     raise FileError("the file has frequencies but no response; name it response, or responseRe and responseIm")
+
+
+def matrices(values: NDArray[Number], count: int, channels: tuple[int, int], what: str) -> NDArray[Number]:
+    """One number or one matrix (n_y, n_u) for each of `count` frequencies.
+
+    Where the plant has one input or one output, the values may come as a table with a row a frequency; matrices may
+    come with the frequencies last, as control toolboxes keep them. Raises FileError for other shapes.
+    """
+    if values.ndim == 1:
+        return values
+    if values.ndim == 2 and 1 in channels and values.shape == (count, channels[0] * channels[1]):
+        return values.reshape(count, *channels)
+    if values.ndim == 3 and len(values) == count:
+        return values
+    if values.ndim == 3 and values.shape[2] == count:
+        return np.moveaxis(values, 2, 0)
+    raise FileError(
+        f"the {what} has shape {values.shape} for {count} frequencies; give one value a frequency, or one matrix with a"
+        " row for each output and a column for each input"
+    )
+
+
+def _variance(table: Table, count: int, channels: tuple[int, int]) -> FloatArray | None:
+    return matrices(_real(table, "variance"), count, channels, "variance") if "variance" in table else None
 
 
 def _real(table: Table, name: str) -> FloatArray:
@@ -123,7 +151,7 @@ def _scalar(table: Table, name: str) -> float | None:
     if name not in table:
         return None
     values = _real(table, name)
-    if len(values) == 0 or np.any(values != values[0]) or values[0] <= 0:
+    if values.size == 0 or np.any(values != values[0]) or values[0] <= 0:
         raise FileError(f"the {name.replace('_', ' ')} in the file is not one positive number")
     return float(values[0])
 

@@ -7,7 +7,8 @@ from fastapi import APIRouter, Query, Response
 from app.dependencies import ContainerDependency, Cursor, IdempotencyKey, Limit, ResourcesDependency
 from app.schemas.jobs import Job
 from app.schemas.models import Model, ModelFrequencyResponse, ModelList, ModelRequest, StatedModelRequest
-from app.services import model_responses, models
+from app.schemas.state_space import StateSpaceModelRequest
+from app.services import model_responses, models, state_space_models
 from app.services.jobs import accepted
 
 router = APIRouter(prefix="/models", tags=["models"])
@@ -21,6 +22,14 @@ def create_model(
 ) -> Job:
     """Identify a model from experiments."""
     return accepted(models.submit(container, body, key), response)
+
+
+@router.post("/state-space", status_code=202)
+def create_state_space_model(
+    body: StateSpaceModelRequest, container: ContainerDependency, response: Response, key: IdempotencyKey = None
+) -> Job:
+    """Identify a state-space model from frequency responses, also with several inputs and outputs."""
+    return accepted(state_space_models.submit(container, body, key), response)
 
 
 @router.post("/stated", status_code=201)
@@ -64,6 +73,9 @@ def get_model_frequency_response(
     count: Annotated[
         int, Query(ge=1, le=2000, description="frequencies, spread logarithmically unless the lowest is zero")
     ] = 200,
+    output_number: Annotated[int, Query(alias="outputNumber", ge=1, le=50, description="which output, from 1")] = 1,
+    input_number: Annotated[int, Query(alias="inputNumber", ge=1, le=50, description="which input, from 1")] = 1,
 ) -> ModelFrequencyResponse:
-    """The frequency response at one operating point with 95 % bands."""
-    return model_responses.frequency_response(resources, modelId, operating_point, minimum, maximum, count)
+    """The frequency response of one output to one input at one operating point, with 95 % bands."""
+    channel = output_number, input_number
+    return model_responses.frequency_response(resources, modelId, operating_point, (minimum, maximum, count), channel)

@@ -8,7 +8,7 @@ from app.arrays import Matrix, Vector
 from app.schemas.common import CamelModel, Double, Integer, Timestamp
 from app.schemas.experiments import Identifier
 from app.schemas.families import AccuracyTarget, SpectrumFamily
-from app.schemas.models import OutcomeDocument
+from app.schemas.outcomes import OutcomeDocument
 from app.schemas.plants import LongText, OperatingPoint, Positive, SampleTime, Text
 from app.schemas.plug_ins import named_union
 

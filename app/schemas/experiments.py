@@ -2,14 +2,15 @@
 
 from typing import Annotated, Literal
 
-from pydantic import Field, RootModel
+from pydantic import Field, RootModel, field_validator
 
-from app.arrays import ComplexVector
+from app.arrays import ComplexMatrices, ComplexVector, Matrices, matrices_shape
 from app.schemas.common import CamelModel, Double, Integer, Timestamp
 from app.schemas.plants import LongText, OperatingPoint, Positive, SampleTime, Text
 
 Identifier = Annotated[str, Field(min_length=1, max_length=64)]
 Values = list[Double]
+ExperimentKind = Literal["timeRecord", "frequencyResponse", "matrixFrequencyResponse"]
 
 
 class ExperimentFields(CamelModel):
@@ -49,8 +50,34 @@ class FrequencyResponseRequest(ExperimentFields):
     )
 
 
+class MatrixFrequencyResponseRequest(ExperimentFields):
+    """A measured frequency response with several inputs or outputs."""
+
+    kind: Literal["matrixFrequencyResponse"]
+    sample_time_seconds: SampleTime | None = Field(default=None, description="null for continuous time")
+    frequencies_rad_per_second: Values = Field(description="distinct frequencies, zero or more")
+    response: ComplexMatrices = Field(description="one matrix a frequency: a row for each output, a column each input")
+    variance: Matrices | None = Field(
+        default=None, description="E|noise|² of each entry of each matrix (real and imaginary part half of it each)"
+    )
+    variance_degrees_of_freedom: Positive | None = Field(
+        default=None, description="degrees of freedom of estimated variances; null when they are known exactly"
+    )
+
+    @field_validator("variance")
+    @classmethod
+    def _of_one_shape(cls, variance: Matrices | None) -> Matrices | None:
+        if variance is not None:
+            matrices_shape(variance, "variance")
+        return variance
+
+
 class ExperimentRequest(
-    RootModel[Annotated[TimeRecordRequest | FrequencyResponseRequest, Field(discriminator="kind")]]
+    RootModel[
+        Annotated[
+            TimeRecordRequest | FrequencyResponseRequest | MatrixFrequencyResponseRequest, Field(discriminator="kind")
+        ]
+    ]
 ):
     """A time record or a frequency response, told apart by `kind`."""
 
@@ -74,6 +101,8 @@ class Understanding(CamelModel):
     period_detected: bool = Field(default=False, description="the period was found, not stated")
     periods: Integer | None = Field(default=None, description="whole periods in the record")
     transient_periods: Integer | None = Field(default=None, description="leading periods that show a transient")
+    input_count: Integer = Field(default=1, description="inputs")
+    output_count: Integer = Field(default=1, description="outputs")
     frequency_count: Integer = Field(description="excited lines, or frequencies of the response")
     minimum_frequency_rad_per_second: Double | None = None
     maximum_frequency_rad_per_second: Double | None = None
@@ -97,7 +126,7 @@ class Experiment(ExperimentFields):
     created_at: Timestamp
     job_id: str | None
     software_version: str
-    kind: Literal["timeRecord", "frequencyResponse"]
+    kind: ExperimentKind
     sample_time_seconds: Double | None = Field(description="null for a frequency response in continuous time")
     variance_known: bool = Field(description="whether variances came with the frequency response")
     variance_degrees_of_freedom: Double | None = Field(description="of these variances; null when known exactly")
@@ -131,5 +160,18 @@ class FrequencyResponseData(CamelModel):
     variance: Values | None
 
 
-class ExperimentData(RootModel[Annotated[TimeRecordData | FrequencyResponseData, Field(discriminator="kind")]]):
+class MatrixFrequencyResponseData(CamelModel):
+    """The values of a frequency response with several inputs or outputs."""
+
+    kind: Literal["matrixFrequencyResponse"]
+    frequencies_rad_per_second: Values
+    response: ComplexMatrices
+    variance: Matrices | None
+
+
+class ExperimentData(
+    RootModel[
+        Annotated[TimeRecordData | FrequencyResponseData | MatrixFrequencyResponseData, Field(discriminator="kind")]
+    ]
+):
     """The arrays of an experiment."""

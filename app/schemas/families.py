@@ -1,19 +1,58 @@
 """The families of plug-ins that requests choose from, each a named union."""
 
-from typing import TYPE_CHECKING
+import dataclasses
+import inspect
+import typing
+from typing import TYPE_CHECKING, Any
 
 import identification.bases
 import identification.lpv
 import identification.lti
+import identification.parametric
+import identification.pole_regions
 import identification.spectral
+import identification.subspace
 import oed.spectra
 import oed.targets
 from app.schemas.plug_ins import PlugInDocument, PlugInFamily
+from identification.pole_regions.inequality import PoleRegion as AnyRegion
+
+
+def _is_simple(region: type[Any]) -> bool:
+    """Whether a pole region is made of no others."""
+    hints = typing.get_type_hints(region)
+    return not any(AnyRegion in typing.get_args(hints[field.name]) for field in dataclasses.fields(region))
+
+
+def _refines(estimator: type[Any]) -> bool:
+    """Whether an estimator begins with a model that another one has found."""
+    return "start" in inspect.signature(estimator.estimate).parameters
+
+
+def _begins(estimator: type[Any]) -> bool:
+    return not _refines(estimator)
+
+
+ORDER = frozenset({"order"})
 
 BASES = PlugInFamily("Basis", "Basis", identification.bases)
 SPECTRAL_ESTIMATORS = PlugInFamily("SpectralEstimator", "Estimator", identification.spectral)
 LOCAL_ESTIMATORS = PlugInFamily("LocalEstimator", "Estimator", identification.lti)
 LPV_ESTIMATORS = PlugInFamily("LpvEstimator", "Estimator", identification.lpv)
+SIMPLE_POLE_REGIONS = PlugInFamily("SimplePoleRegion", "Region", identification.pole_regions, only=_is_simple)
+POLE_REGIONS = PlugInFamily(
+    "PoleRegion",
+    "Region",
+    identification.pole_regions,
+    nested={AnyRegion: SIMPLE_POLE_REGIONS.union},
+    parts=SIMPLE_POLE_REGIONS,
+)
+REGIONS = {AnyRegion: POLE_REGIONS.union}
+SUBSPACE_ESTIMATORS = PlugInFamily("SubspaceEstimator", "Estimator", identification.subspace, elsewhere=ORDER)
+PARAMETRIC_ESTIMATORS = PlugInFamily(
+    "ParametricEstimator", "Estimator", identification.parametric, nested=REGIONS, elsewhere=ORDER, only=_begins
+)
+REFINEMENTS = PlugInFamily("Refinement", "Refinement", identification.parametric, nested=REGIONS, only=_refines)
 TARGETS = PlugInFamily("AccuracyTarget", "Target", oed.targets)
 SPECTRUM_FAMILIES = PlugInFamily("SpectrumFamily", "Family", oed.spectra)
 
@@ -22,6 +61,10 @@ FAMILIES = {
     "spectralEstimators": SPECTRAL_ESTIMATORS,
     "localEstimators": LOCAL_ESTIMATORS,
     "lpvEstimators": LPV_ESTIMATORS,
+    "subspaceEstimators": SUBSPACE_ESTIMATORS,
+    "parametricEstimators": PARAMETRIC_ESTIMATORS,
+    "refinements": REFINEMENTS,
+    "poleRegions": POLE_REGIONS,
     "targets": TARGETS,
     "spectrumFamilies": SPECTRUM_FAMILIES,
 }
@@ -31,6 +74,9 @@ if TYPE_CHECKING:
     SpectralEstimator = PlugInDocument
     LocalEstimator = PlugInDocument
     LpvEstimator = PlugInDocument
+    SubspaceEstimator = PlugInDocument
+    ParametricEstimator = PlugInDocument
+    Refinement = PlugInDocument
     AccuracyTarget = PlugInDocument
     SpectrumFamily = PlugInDocument
 else:
@@ -38,5 +84,8 @@ else:
     SpectralEstimator = SPECTRAL_ESTIMATORS.union
     LocalEstimator = LOCAL_ESTIMATORS.union
     LpvEstimator = LPV_ESTIMATORS.union
+    SubspaceEstimator = SUBSPACE_ESTIMATORS.union
+    ParametricEstimator = PARAMETRIC_ESTIMATORS.union
+    Refinement = REFINEMENTS.union
     AccuracyTarget = TARGETS.union
     SpectrumFamily = SPECTRUM_FAMILIES.union

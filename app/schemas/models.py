@@ -8,7 +8,17 @@ from app.arrays import ComplexVector, Matrix, Vector
 from app.schemas.common import CamelModel, Double, Integer, Timestamp
 from app.schemas.experiments import Identifier
 from app.schemas.families import LocalEstimator, LpvEstimator, SpectralEstimator
-from app.schemas.plants import CoefficientBasis, LongText, Positive, ProductBasisDocument, Structure, Text
+from app.schemas.outcomes import OutcomeDocument, PolesAtPoint, TestDocument
+from app.schemas.plants import (
+    CoefficientBasis,
+    LongText,
+    Positive,
+    ProductBasisDocument,
+    RationalStructureDocument,
+    Structure,
+    Text,
+)
+from app.schemas.state_space import StateSpaceResult
 
 
 class ModelRequest(CamelModel):
@@ -26,7 +36,9 @@ class ModelRequest(CamelModel):
         default=None,
         description="how time records become frequency responses, when the local estimator needs those",
     )
-    structure: Structure | None = Field(default=None, description="in place of the structure of the plant")
+    structure: RationalStructureDocument | None = Field(
+        default=None, description="in place of the structure of the plant"
+    )
     basis: ProductBasisDocument | None = Field(default=None, description="in place of the basis of the plant")
     coefficient_bases: list[CoefficientBasis] | None = Field(default=None, description="in place of those of the plant")
     prior_model_id: Identifier | None = Field(
@@ -44,25 +56,6 @@ class StatedModelRequest(CamelModel):
     theta: Vector = Field(description="parameters, in the order of the plant's parameterNames")
     noise_variance: Positive = Field(description="variance of the white noise e")
     covariance: Matrix | None = Field(default=None, description="covariance of theta; null when it is not known")
-
-
-class OutcomeDocument(CamelModel):
-    """How a computation ended."""
-
-    status: Literal["converged", "not_converged", "not_identifiable", "infeasible"]
-    advice: str = Field(description="what to change when it did not converge")
-    iterations: Integer
-
-
-class TestDocument(CamelModel):
-    """A statistic held against its distribution; a small p-value speaks against the model."""
-
-    __test__ = False
-
-    name: str
-    statistic: Double | None
-    degrees_of_freedom: Double | None
-    p_value: Double | None
 
 
 class LocalModelDocument(CamelModel):
@@ -83,13 +76,6 @@ class LocalModelDocument(CamelModel):
     experiment_id: str | None = Field(description="the experiment that it was fitted to")
 
 
-class PolesAtPoint(CamelModel):
-    """Poles at one operating point."""
-
-    operating_point: Vector
-    poles: ComplexVector = Field(description="in the z-plane, or in rad/s in continuous time")
-
-
 class Model(CamelModel):
     """A parameter-varying model with its accuracy and where it came from."""
 
@@ -106,10 +92,12 @@ class Model(CamelModel):
     coefficient_bases: list[CoefficientBasis]
     coefficient_names: list[str]
     parameter_names: list[str]
-    theta: Vector
+    theta: Vector = Field(
+        description="of a state-space model all entries of A, B, C and D, function by function, row by row"
+    )
     standard_deviations: Vector | None = Field(description="of theta; null when they are not known")
     covariance: Matrix | None = Field(description="of theta; null when it is not known")
-    noise_variance: Double
+    noise_variance: Double | None = Field(description="null for a state-space model that was not refined")
     outcome: OutcomeDocument
     tests: list[TestDocument]
     local_models: list[LocalModelDocument]
@@ -122,6 +110,7 @@ class Model(CamelModel):
     design_id: str | None = Field(description="the design that all its experiments carry out, if it is one")
     parent_id: str | None = Field(description="the model that this one is a new version of")
     seed: Integer | None = Field(description="seed of what was drawn at random; null when nothing was")
+    state_space: StateSpaceResult | None = Field(default=None, description="of a state-space model; null for others")
 
 
 class ModelList(CamelModel):
@@ -136,6 +125,8 @@ class ModelFrequencyResponse(CamelModel):
 
     model_id: str
     operating_point: Vector
+    input_number: Integer = Field(default=1, description="which input, counted from 1")
+    output_number: Integer = Field(default=1, description="which output, counted from 1")
     frequencies_rad_per_second: Vector
     response: ComplexVector
     magnitude: Vector

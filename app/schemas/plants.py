@@ -12,6 +12,7 @@ Text = Annotated[str, Field(max_length=200)]
 Name = Annotated[str, Field(min_length=1, max_length=200)]
 LongText = Annotated[str, Field(max_length=10_000)]
 Order = Annotated[Integer, Field(ge=0, le=30)]
+StateOrder = Annotated[Integer, Field(ge=1, le=100)]
 Positive = Annotated[Double, Field(gt=0)]
 SampleTime = Annotated[Double, Field(ge=1e-15, le=1e15)]
 OperatingPoint = Annotated[list[Double], Field(min_length=1, max_length=10)]
@@ -58,6 +59,28 @@ class ContinuousTimeStructure(CamelModel):
     )
 
 
+class StateSpaceStructure(CamelModel):
+    """What state-space structures of both time domains state."""
+
+    order: StateOrder | None = Field(
+        default=None,
+        description="number of states; null: chosen by the error on held-out lines, for models of one operating point",
+    )
+
+
+class DiscreteStateSpaceStructure(StateSpaceStructure):
+    """x(t + T) = A x + B u, y = C x + D u, with as many inputs and outputs as the plant has."""
+
+    time_domain: Literal["discreteStateSpace"]
+    sample_time_seconds: SampleTime = Field(description="sample time T of responses and model")
+
+
+class ContinuousStateSpaceStructure(StateSpaceStructure):
+    """dx/dt = A x + B u, y = C x + D u, with as many inputs and outputs as the plant has."""
+
+    time_domain: Literal["continuousStateSpace"]
+
+
 class ProductBasisDocument(CamelModel):
     """Products of basis functions, one factor for each scheduling variable."""
 
@@ -68,28 +91,43 @@ class ProductBasisDocument(CamelModel):
 
 
 class CoefficientBasis(CamelModel):
-    """The basis of one coefficient, in place of the common one."""
+    """The basis of one coefficient, or of one matrix of a state-space model, in place of the common one."""
 
-    coefficient: Name = Field(description="name of the coefficient, e.g. a1, b0, tau")
+    coefficient: Name = Field(
+        description="name of the coefficient, e.g. a1, b0, tau, or A, B, C, D; polynomials of degree 0 keep it constant"
+    )
     basis: ProductBasisDocument
 
 
+RATIONAL = (DiscreteTimeStructure, ContinuousTimeStructure)
+STATE_SPACE = (DiscreteStateSpaceStructure, ContinuousStateSpaceStructure)
+
 if TYPE_CHECKING:
-    Structure = DiscreteTimeStructure | ContinuousTimeStructure
+    RationalStructureDocument = DiscreteTimeStructure | ContinuousTimeStructure
+    StateSpaceStructureDocument = DiscreteStateSpaceStructure | ContinuousStateSpaceStructure
+    Structure = RationalStructureDocument | StateSpaceStructureDocument
 else:
-    Structure = named_union("Structure", (DiscreteTimeStructure, ContinuousTimeStructure), "time_domain")
+    RationalStructureDocument = named_union("RationalStructure", RATIONAL, "time_domain")
+    StateSpaceStructureDocument = named_union("StateSpaceStructure", STATE_SPACE, "time_domain")
+    Structure = named_union("Structure", RATIONAL + STATE_SPACE, "time_domain")
+
+Signals = Annotated[list[SignalDescription], Field(min_length=1, max_length=50)]
 
 
 class PlantRequest(CamelModel):
-    """A plant to describe."""
+    """A plant to describe: rational with `input` and `output`, or in state space with `inputs` and `outputs`."""
 
     name: Name
     description: LongText = ""
     scheduling_variables: Annotated[list[SchedulingVariableDocument], Field(min_length=1, max_length=10)]
-    input: SignalDescription
-    output: SignalDescription
+    input: SignalDescription | None = Field(default=None, description="of a rational structure")
+    output: SignalDescription | None = Field(default=None, description="of a rational structure")
+    inputs: Signals | None = Field(default=None, description="of a state-space structure")
+    outputs: Signals | None = Field(default=None, description="of a state-space structure")
     structure: Structure = Field(description="model structure")
-    basis: ProductBasisDocument = Field(description="how all coefficients depend on the scheduling variables")
+    basis: ProductBasisDocument = Field(
+        description="how all coefficients, or all matrices of a state-space model, depend on the scheduling variables"
+    )
     coefficient_bases: list[CoefficientBasis] = Field(default_factory=list, description="exceptions to `basis`")
 
 
@@ -99,7 +137,9 @@ class Plant(PlantRequest):
     id: str
     created_at: Timestamp
     software_version: str
-    parameter_names: list[str] = Field(description="names of the entries of theta, in order")
+    parameter_names: list[str] = Field(
+        description="names of the entries of theta, in order; of a state-space structure the matrices of each function"
+    )
     needed_operating_points: int = Field(description="least number of distinct operating points that determine theta")
 
 

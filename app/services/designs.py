@@ -32,13 +32,14 @@ def submit(container: Container, request: DesignRequest, key: str | None) -> Job
 
 def payload(plant: Plant, model: Model, request: DesignRequest) -> dict[str, Any]:
     """What the task gets; raises UnprocessableError when the request does not fit plant and model."""
-    known = kept_model(model, plant)
+    with pointing({}, default="/modelId"):
+        known = kept_model(model, plant)
     with pointing(POINTERS, default="/operatingPoints"):
         searched = searched_model(request, known)
         points = candidate_points(request, searched.dependence)
     with pointing(POINTERS, default="/energyCaps"):
         energy_caps(request, points, searched.dependence)
-    if not model.noise_variance > 0:
+    if not known.noise_variance > 0:
         raise UnprocessableError.at("/modelId", "the model has no noise, so any experiment would be accurate enough")
     if not known.structure.is_discrete and request.sample_time_seconds is None:
         raise UnprocessableError.at("/sampleTimeSeconds", "needed for a plant in continuous time")

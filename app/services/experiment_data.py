@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from app.arrays import ComplexVector
+from app.arrays import ComplexMatrices, ComplexVector
 from app.container import Container
 from app.conversion.experiments import kept_measurement
 from app.files.stored import Format, arrays_file
@@ -13,6 +13,7 @@ from app.schemas.experiments import (
     Experiment,
     ExperimentData,
     FrequencyResponseData,
+    MatrixFrequencyResponseData,
     TimeRecordData,
 )
 from app.services.experiments import KIND, experiment_of
@@ -39,12 +40,22 @@ def as_document(container: Container, experiment_id: str) -> ExperimentData:
                 output=data.output.tolist(),
             )
         )
+    variance = None if data.variance is None else data.variance.tolist()
+    if data.response.ndim > 1:
+        return ExperimentData(
+            MatrixFrequencyResponseData(
+                kind="matrixFrequencyResponse",
+                frequencies_rad_per_second=data.frequencies.tolist(),
+                response=ComplexMatrices.of(data.response),
+                variance=variance,
+            )
+        )
     return ExperimentData(
         FrequencyResponseData(
             kind="frequencyResponse",
             frequencies_rad_per_second=data.frequencies.tolist(),
             response=ComplexVector.of(data.response),
-            variance=None if data.variance is None else data.variance.tolist(),
+            variance=variance,
         )
     )
 

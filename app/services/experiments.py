@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.container import Container
-from app.conversion.experiments import requested_measurement
+from app.conversion.experiments import requested_measurement, require_channels
 from app.conversion.misuse import pointing
-from app.conversion.plants import structure_and_dependence
+from app.conversion.plants import channels, plant_dependence
 from app.errors import UnprocessableError
 from app.files.measurement import measurement_arrays
 from app.jobs.records import JobRecord
@@ -36,7 +36,7 @@ POINTERS = {
 def submit(container: Container, request: ExperimentRequest, key: str | None) -> JobRecord:
     """Start the job that looks at measured arrays."""
     plant = _plant_with_point(container.resources, request.root)
-    payload, arrays = json_payload(request)
+    payload, arrays = json_payload(plant, request)
     payload["arrays"] = container.arrays.put(arrays)
     return _submit(container, plant, payload, key)
 
@@ -44,26 +44,26 @@ def submit(container: Container, request: ExperimentRequest, key: str | None) ->
 def submit_file(container: Container, request: FileFields, content: bytes, name: str, key: str | None) -> JobRecord:
     """Start the job that reads a file of measurements."""
     plant = _plant_with_point(container.resources, request)
-    payload, arrays = file_payload(request, content, name)
+    payload, arrays = file_payload(plant, request, content, name)
     payload["arrays"] = container.arrays.put(arrays)
     return _submit(container, plant, payload, key)
 
 
-def json_payload(request: ExperimentRequest) -> tuple[dict[str, Any], Arrays]:
+def json_payload(plant: Plant, request: ExperimentRequest) -> tuple[dict[str, Any], Arrays]:
     """What the task gets beside the hash of the arrays, and the arrays."""
     with pointing(POINTERS, default=""):
-        arrays = measurement_arrays(requested_measurement(request.root))
+        data = requested_measurement(request.root)
+        require_channels(data, channels(plant))
     stated = request.root.model_dump(by_alias=True, mode="json", exclude=ARRAYS_OF_BODY)
-    return {"source": "json", "fileName": None, "stated": stated}, arrays
+    return _task("json", None, stated, plant), measurement_arrays(data)
 
 
-def file_payload(request: FileFields, content: bytes, name: str) -> tuple[dict[str, Any], Arrays]:
+def file_payload(plant: Plant, request: FileFields, content: bytes, name: str) -> tuple[dict[str, Any], Arrays]:
     """What the task gets beside the hash of the file, and the file as an array of bytes."""
     if not content:
         raise UnprocessableError.at("/file", "the file is empty")
     stated = request.as_json()
-    payload = {"source": file_format(name), "fileName": name[:200], "stated": stated}
-    return payload, {"file": np.frombuffer(content, dtype=np.uint8)}
+    return _task(file_format(name), name[:200], stated, plant), {"file": np.frombuffer(content, dtype=np.uint8)}
 
 
 def file_format(name: str) -> Literal["csv", "npz", "mat"]:
@@ -74,6 +74,10 @@ def file_format(name: str) -> Literal["csv", "npz", "mat"]:
     if name.lower().endswith((".txt", ".tsv")):
         return "csv"
     raise UnprocessableError.at("/file", "the name of the file must end in .csv, .npz or .mat")
+
+
+def _task(source: str, file_name: str | None, stated: dict[str, Any], plant: Plant) -> dict[str, Any]:
+    return {"source": source, "fileName": file_name, "stated": stated, "channels": list(channels(plant))}
 
 
 def experiment_of(resource: Resource) -> Experiment:
@@ -95,7 +99,7 @@ def page(resources: ResourceRepository, plant_id: str | None, limit: int, cursor
 def _plant_with_point(resources: ResourceRepository, request: Any) -> Plant:
     plant = plant_of(named(resources, "plants", request.plant_id, "/plantId"))
     with pointing({}, default="/operatingPoint"):
-        structure_and_dependence(plant)[1].points([request.operating_point])
+        plant_dependence(plant).points([request.operating_point])
     if request.design_id is not None:
         of_plant(named(resources, "designs", request.design_id, "/designId"), plant.id, "/designId")
     return plant

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 
+from app.conversion.misuse import pointing
 from app.conversion.models import kept_model
 from app.errors import UnprocessableError
 from app.schemas.experiments import Experiment
@@ -29,7 +30,7 @@ def check_fitting(request: ModelRequest, structure: RationalStructure, experimen
         )
     for i, experiment in enumerate(experiments):
         pointer = f"/experimentIds/{i}"
-        if experiment.kind == "frequencyResponse":
+        if experiment.kind != "timeRecord":
             _check_response(takes_records, kind, structure, experiment, pointer)
         else:
             _check_record(takes_records, request, structure, experiment, pointer)
@@ -43,7 +44,8 @@ def check_prior(
     experiment_ids: Sequence[str],
 ) -> None:
     """Raises UnprocessableError unless the information of a prior model can be added to that of the experiments."""
-    earlier = kept_model(prior, plant)
+    with pointing({}, default="/priorModelId"):
+        earlier = kept_model(prior, plant)
     if earlier.structure != structure or earlier.dependence != dependence:
         reason = "has another structure or basis than the model asked for"
     elif prior.covariance is None:
@@ -60,8 +62,9 @@ def _check_response(
 ) -> None:
     if takes_records:
         raise UnprocessableError.at(pointer, f"this is a frequency response; {kind} takes time records")
-    if not _same(experiment.sample_time_seconds, structure.sample_time):
-        raise UnprocessableError.at(pointer, _sample_times(experiment.sample_time_seconds, structure.sample_time))
+    if experiment.kind == "matrixFrequencyResponse":
+        raise UnprocessableError.at(pointer, f"this response has several inputs or outputs; {kind} takes one of each")
+    check_sample_time(experiment, structure.sample_time, pointer)
 
 
 def _check_record(
@@ -71,8 +74,14 @@ def _check_record(
         raise UnprocessableError.at(
             "/spectralEstimator", "choose how the time records become the frequency responses that are fitted"
         )
-    if structure.is_discrete and not _same(experiment.sample_time_seconds, structure.sample_time):
-        raise UnprocessableError.at(pointer, _sample_times(experiment.sample_time_seconds, structure.sample_time))
+    if structure.is_discrete:
+        check_sample_time(experiment, structure.sample_time, pointer)
+
+
+def check_sample_time(experiment: Experiment, sample_time: float | None, pointer: str) -> None:
+    """Raises UnprocessableError unless an experiment is in the time domain, and of the sample time, of a model."""
+    if not _same(experiment.sample_time_seconds, sample_time):
+        raise UnprocessableError.at(pointer, _sample_times(experiment.sample_time_seconds, sample_time))
 
 
 def _same(one: float | None, other: float | None) -> bool:

@@ -1,5 +1,7 @@
 """Frequency responses of models that were kept."""
 
+from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -7,46 +9,106 @@ import numpy as np
 from app.arrays import ComplexVector
 from app.conversion.misuse import pointing
 from app.conversion.models import kept_model
+from app.conversion.state_space import kept_local, kept_state_space
 from app.errors import UnprocessableError
-from app.schemas.models import ModelFrequencyResponse
+from app.schemas.models import Model, ModelFrequencyResponse
+from app.schemas.plants import Plant
 from app.services.models import get
 from app.services.plants import get as get_plant
 from app.store.resources import ResourceRepository
-from identification.arrays import FloatArray
+from identification.arrays import ComplexArray, FloatArray
 from identification.confidence import GainAndPhase, gain_and_phase
 from identification.errors import RangeError
+from identification.outcome import Outcome
+from identification.parametric.state_space_likelihood import LikelihoodEstimate
 
 BANDS = ("magnitude_lower95", "magnitude_upper95", "phase_lower95_rad", "phase_upper95_rad")
 
 
+@dataclass(frozen=True)
+class _Evaluated:
+    """How a model answers at its operating point: G (F,), and the covariance (F, 2, 2) of its parts where known."""
+
+    sample_time: float | None
+    response: Callable[[FloatArray], ComplexArray]
+    covariance: Callable[[FloatArray], FloatArray] | None
+
+
 def frequency_response(
-    resources: ResourceRepository, model_id: str, point: list[float], minimum: float, maximum: float, count: int
+    resources: ResourceRepository,
+    model_id: str,
+    point: list[float],
+    band: tuple[float, float, int],
+    channel: tuple[int, int],
 ) -> ModelFrequencyResponse:
-    """The response of a model at one operating point over a band, with 95 % bands."""
+    """The response of a model at one operating point over a band (lowest, highest, count), with 95 % bands."""
     document = get(resources, model_id)
-    model = kept_model(document, get_plant(resources, document.plant_id))
-    if minimum > maximum:
-        raise UnprocessableError.at("/maximumRadPerSecond", "the band must rise", "query")
-    step = model.structure.sample_time
-    if step is not None and maximum > np.pi / step * (1 + 1e-9):
-        raise UnprocessableError.at(
-            "/maximumRadPerSecond", f"lies above the Nyquist frequency {np.pi / step:.6g} rad/s", "query"
-        )
-    omega = np.geomspace(minimum, maximum, count) if minimum > 0 else np.linspace(minimum, maximum, count)
-    known = document.covariance is not None
+    plant = get_plant(resources, document.plant_id)
+    _check_channel(document, channel)
     with pointing({}, "/operatingPoint", "query"):
-        response = model.frequency_response([point], omega)[0]
-        covariance = model.response_covariance([point], omega)[0] if known else np.zeros((count, 2, 2))
+        model = (_rational if document.state_space is None else _state_space)(document, plant, point, channel)
+    omega, count = _frequencies(band, model.sample_time), band[2]
+    with pointing({}, "/operatingPoint", "query"):
+        response = model.response(omega)
+        covariance = np.zeros((count, 2, 2)) if model.covariance is None else model.covariance(omega)
         if not (np.isfinite(response).all() and np.isfinite(covariance).all()):
             raise RangeError("the response is infinite in this band, e.g. at a pole; leave that frequency out")
+    known = model.covariance is not None
     return ModelFrequencyResponse(
         model_id=model_id,
         operating_point=point,
+        output_number=channel[0],
+        input_number=channel[1],
         frequencies_rad_per_second=omega.tolist(),
         response=ComplexVector.of(response),
         **_gain_and_phase(gain_and_phase(response, covariance), known),
         **_covariance(covariance, known),
     )
+
+
+def _rational(document: Model, plant: Plant, point: list[float], channel: tuple[int, int]) -> _Evaluated:
+    model = kept_model(document, plant)
+    return _Evaluated(
+        model.structure.sample_time,
+        lambda omega: model.frequency_response([point], omega)[0],
+        None if document.covariance is None else lambda omega: model.response_covariance([point], omega)[0],
+    )
+
+
+def _state_space(document: Model, plant: Plant, point: list[float], channel: tuple[int, int]) -> _Evaluated:
+    y, u = (number - 1 for number in channel)
+    model = kept_state_space(document, plant)
+    if model is None:
+        local = kept_local(document, point)
+        return _Evaluated(local.sample_time, lambda omega: local.frequency_response(omega)[:, y, u], None)
+    covariance = None
+    if document.covariance is not None:
+        known, noise = np.array(document.covariance), document.noise_variance or 1.0
+        estimate = LikelihoodEstimate(model, known, noise, Outcome("converged"), ())
+
+        def covariance(omega: FloatArray) -> FloatArray:
+            return estimate.response_covariance([point], omega)[0, :, y, u]
+
+    return _Evaluated(model.sample_time, lambda omega: model.frequency_response([point], omega)[0, :, y, u], covariance)
+
+
+def _check_channel(document: Model, channel: tuple[int, int]) -> None:
+    found = document.state_space
+    most = (1, 1) if found is None else (found.output_count, found.input_count)
+    for name, number, count in zip(("output", "input"), channel, most, strict=True):
+        if number > count:
+            raise UnprocessableError.at(f"/{name}Number", f"the model has {count} {name}s", "query")
+
+
+def _frequencies(band: tuple[float, float, int], step: float | None) -> FloatArray:
+    minimum, maximum, count = band
+    if minimum > maximum:
+        raise UnprocessableError.at("/maximumRadPerSecond", "the band must rise", "query")
+    if step is not None and maximum > np.pi / step * (1 + 1e-9):
+        raise UnprocessableError.at(
+            "/maximumRadPerSecond", f"lies above the Nyquist frequency {np.pi / step:.6g} rad/s", "query"
+        )
+    return np.geomspace(minimum, maximum, count) if minimum > 0 else np.linspace(minimum, maximum, count)
 
 
 def _gain_and_phase(values: GainAndPhase, known: bool) -> dict[str, Any]:

@@ -8,11 +8,12 @@ from app.container import Container
 from app.conversion.extremes import within_doubles
 from app.conversion.misuse import pointing
 from app.conversion.models import accuracy_documents, check_covariance, range_documents, requested_structure
-from app.conversion.plants import lpv_model, structure_and_dependence
+from app.conversion.plants import is_state_space, lpv_model, structure_and_dependence
 from app.errors import UnprocessableError
 from app.jobs.records import JobRecord
 from app.schemas.experiments import Experiment
-from app.schemas.models import Model, ModelList, ModelRequest, OutcomeDocument, StatedModelRequest
+from app.schemas.models import Model, ModelList, ModelRequest, StatedModelRequest
+from app.schemas.outcomes import OutcomeDocument
 from app.schemas.plants import Plant
 from app.services.documents import fields, items, named, named_of_plant, of_plant
 from app.services.experiments import experiment_of
@@ -23,6 +24,7 @@ from app.store.resources import Resource, ResourceRepository
 from identification.models import LpvModel, RationalStructure
 
 KIND = "models"
+STATE_SPACE = "the plant has a state-space structure; its models are identified with POST /v1/models/state-space"
 STATED_POINTERS = {"theta": "/theta", "covariance": "/covariance"}
 
 
@@ -44,6 +46,8 @@ def payload(
     plant: Plant, request: ModelRequest, experiments: Sequence[tuple[Experiment, str]], prior: Model | None = None
 ) -> dict[str, Any]:
     """What the task gets; raises UnprocessableError when experiments, structure and estimators do not fit."""
+    if request.structure is None and is_state_space(plant.structure):
+        raise UnprocessableError.at("/plantId", STATE_SPACE)
     pointers = {"basis": "/basis", "coefficient_bases": "/coefficientBases"}
     with pointing(pointers, default="/structure"):
         structure, dependence = requested_structure(plant, request)
@@ -64,7 +68,8 @@ def payload(
 
 def stated(plant: Plant, request: StatedModelRequest) -> dict[str, Any]:
     """The document of a stated model; raises UnprocessableError when it does not fit the plant or is unstable."""
-    structure, dependence = structure_and_dependence(plant)
+    with pointing({}, default="/plantId"):
+        structure, dependence = structure_and_dependence(plant)
     with pointing(STATED_POINTERS, default=""):
         model = lpv_model(structure, dependence, request.theta, request.covariance, request.noise_variance)
         check_covariance(model.covariance)

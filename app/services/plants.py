@@ -4,7 +4,8 @@ from typing import Any
 
 from app import __version__
 from app.conversion.misuse import pointing
-from app.conversion.plants import structure_and_dependence
+from app.conversion.plants import MATRIX_NAMES, is_state_space, plant_dependence, rational_of
+from app.errors import UnprocessableError
 from app.schemas.plants import Plant, PlantList, PlantRequest
 from app.services.documents import fields, items
 from app.store.resources import Resource, ResourceRepository
@@ -21,14 +22,32 @@ POINTERS = {
 
 def described(request: PlantRequest) -> dict[str, Any]:
     """The document of a plant; raises UnprocessableError when its parts do not fit each other."""
+    _check_signals(request)
     with pointing(POINTERS, default="/basis"):
-        structure, dependence = structure_and_dependence(request)
+        state_space = is_state_space(request.structure)
+        names = MATRIX_NAMES if state_space else rational_of(request.structure).coefficient_names
+        dependence = plant_dependence(request)
     return {
         **request.as_json(),
         "softwareVersion": __version__,
-        "parameterNames": list(dependence.parameter_names(structure.coefficient_names)),
+        "parameterNames": list(dependence.parameter_names(names)),
         "neededOperatingPoints": dependence.needed_operating_points,
     }
+
+
+def _check_signals(request: PlantRequest) -> None:
+    """One input and output for rational structures, lists of them for state-space ones, with names that differ."""
+    state_space = is_state_space(request.structure)
+    for wanted, refused in (("inputs", "input"), ("outputs", "output")):
+        if not state_space:
+            wanted, refused = refused, wanted
+        if getattr(request, wanted) is None:
+            raise UnprocessableError.at(f"/{wanted}", f"{wanted} must be given for this structure")
+        if getattr(request, refused) is not None:
+            raise UnprocessableError.at(f"/{refused}", f"give {wanted} in place of {refused} for this structure")
+    for name, signals in (("inputs", request.inputs), ("outputs", request.outputs)):
+        if signals and len({signal.name for signal in signals}) < len(signals):
+            raise UnprocessableError.at(f"/{name}", f"two {name} have the same name")
 
 
 def plant_of(resource: Resource) -> Plant:

@@ -21,7 +21,7 @@ from identification.lpv.stacking import (
 from identification.models import LpvModel, RationalStructure
 from identification.outcome import Outcome, TestResult
 from identification.scheduling import ParameterDependence
-from identification.signals import FrequencyResponse, Measurement
+from identification.signals import FrequencyResponse, Measurement, require_one_channel
 from identification.whiteness import chi_square
 
 
@@ -153,6 +153,7 @@ def _require_usable(
             f"{len(local)} local estimates were given for {len(experiments)} experiments; give one each", "local"
         )
     for estimate, experiment in zip(local, experiments, strict=True):
+        require_one_channel(experiment)
         if estimate.model.structure != structure or estimate.model.operating_point != experiment.operating_point:
             raise MisuseError(
                 f"the local estimate at {place(estimate.model.operating_point)} has another structure or operating"

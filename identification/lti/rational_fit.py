@@ -170,6 +170,7 @@ def relative_error(model: LocalModel, data: FrequencyResponse, weighting: Weight
 
     Raises MisuseError where the variance, or a response other than zero, is missing.
     """
+    require_same_sampling(model.structure, data)
     weights = RationalFit(weighting=weighting)._weights(data)
     error = data.response - model.structure.plant_response(model.zeta, data.frequencies)
     return float(np.linalg.norm(weights * error) / np.linalg.norm(weights * data.response))

@@ -9,6 +9,7 @@ import identification.bases
 import identification.lpv
 import identification.lti
 import identification.spectral
+import identification.subspace
 from identification.bases.polynomial import Polynomial
 from identification.errors import MisuseError
 from identification.models import LocalModel, LpvModel, RationalStructure
@@ -16,12 +17,15 @@ from identification.registry import discover
 from identification.scheduling import ParameterDependence, ProductBasis, SchedulingVariable
 from identification.signals import FrequencyResponse, TimeRecord
 from identification.simulation import simulate
+from identification.subspace.result import SubspaceEstimate
+from tests.support.state_space import noisy, random_system, relative_error
 
 BASES = discover(identification.bases)
 SPECTRAL = discover(identification.spectral)
 LTI = discover(identification.lti)
 LPV = discover(identification.lpv)
-EVERY = [*BASES.values(), *SPECTRAL.values(), *LTI.values(), *LPV.values()]
+SUBSPACE = discover(identification.subspace)
+EVERY = [*BASES.values(), *SPECTRAL.values(), *LTI.values(), *LPV.values(), *SUBSPACE.values()]
 
 PLANT = RationalStructure(n_a=1, n_b=0, n_k=1, sample_time=0.5)
 DEPENDENCE = ParameterDependence(
@@ -94,6 +98,7 @@ def test_what_is_there():
     assert set(BASES) >= {"polynomial", "chebyshev", "b_spline"}
     assert set(LTI) >= {"prediction_error"}
     assert set(LPV) >= {"generalised_least_squares", "joint_likelihood"}
+    assert set(SUBSPACE) >= {"frequency_subspace", "equidistant_subspace"}
 
 
 @named(EVERY)
@@ -164,6 +169,22 @@ def test_local_estimators_find_the_plant(plug_in):
     error = found.model.zeta - (DEPENDENCE.matrix([[0.5]]) @ THETA)[0]
     assert error @ np.linalg.solve(found.model.covariance, error) < 20
     assert all(0 <= test.p_value <= 1 for test in found.tests)
+
+
+@named(SUBSPACE.values())
+def test_subspace_estimators_find_the_plant(plug_in):
+    g = np.random.default_rng(5)
+    plant = random_system(g, 2, 2, 2, 0.5)
+    omega = np.pi / 0.5 * np.arange(61) / 60
+    data = noisy(plant, omega, np.full(61, 0.01), g)
+    found = plug_in.example().estimate(data)
+    assert same(found, plug_in.example().estimate(data))
+    assert isinstance(found, SubspaceEstimate)
+    assert found.outcome.ok
+    assert found.operating_point == data.operating_point
+    assert found.model.stable
+    assert relative_error(found.model, plant, omega) < 0.01
+    assert found.rms_error <= found.max_error < 0.1
 
 
 @named(LPV.values())

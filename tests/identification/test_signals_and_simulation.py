@@ -4,7 +4,10 @@ import numpy as np
 import pytest
 
 from identification.errors import MisuseError, RangeError, ShapeError
+from identification.likelihood import residual_and_jacobian
+from identification.lti.rational_fit import RationalFit
 from identification.models import RationalStructure
+from identification.rational_start import levy
 from identification.signals import FrequencyResponse, TimeRecord
 from identification.simulation import simulate
 
@@ -101,3 +104,70 @@ def test_misuse():
         simulate(PLANT, ZETA, np.ones(10), np.ones(9))
     with pytest.raises(ShapeError):
         simulate(PLANT, ZETA[:3], np.ones(10))
+
+
+def matrix_response(**changes):
+    arguments = {
+        "frequencies": [1.0, 2.0, 3.0],
+        "response": np.arange(18.0).reshape(3, 2, 3),
+        "operating_point": (0.0,),
+    }
+    return FrequencyResponse(**{**arguments, **changes})
+
+
+def test_several_inputs_and_outputs():
+    variance = 1 + np.arange(18.0).reshape(3, 2, 3)
+    data = matrix_response(variance=variance)
+    assert (len(data), data.output_count, data.input_count) == (3, 2, 3)
+    one = data.channel(1, 2)
+    assert np.array_equal(one.response, [5, 11, 17])
+    assert np.array_equal(one.variance, [6, 12, 18])
+    kept = data.lines(slice(None, None, 2))
+    assert np.array_equal(kept.frequencies, [1.0, 3.0])
+    assert np.array_equal(kept.variance, variance[::2])
+    single = FrequencyResponse([1.0, 2.0], [1.0, 2.0], (0.0,), None, [1.0, 4.0])
+    assert np.array_equal(single.matrices, [[[1.0]], [[2.0]]])
+    assert np.array_equal(single.channel(0, 0).variance, [1.0, 4.0])
+
+
+def test_a_covariance_has_the_variances_on_its_diagonal():
+    g = np.random.default_rng(0)
+    root = g.standard_normal((3, 6, 8)) + 1j * g.standard_normal((3, 6, 8))
+    covariance = root @ root.conj().swapaxes(1, 2)
+    data = matrix_response(covariance=covariance)
+    assert np.allclose(data.variance[1, 1, 2], covariance[1, 5, 5].real)
+    assert np.array_equal(data.lines(slice(1, 2)).covariance, covariance[1:2])
+    assert np.allclose(data.channel(0, 1).variance, covariance[:, 1, 1].real)
+
+
+@pytest.mark.parametrize(
+    ("changes", "error", "field"),
+    [
+        ({"response": np.zeros((3, 2))}, ShapeError, "response"),
+        ({"response": np.zeros((2, 2, 2))}, ShapeError, "response"),
+        ({"response": np.zeros((3, 0, 2))}, ShapeError, "response"),
+        ({"variance": np.ones(3)}, ShapeError, "variance"),
+        ({"variance": np.zeros((3, 2, 3))}, RangeError, "variance"),
+        ({"covariance": np.ones((3, 6))}, ShapeError, "covariance"),
+        ({"covariance": -np.tile(np.eye(6), (3, 1, 1))}, RangeError, "covariance"),
+        ({"covariance": np.tile(np.eye(6) + np.eye(6, k=1), (3, 1, 1))}, RangeError, "covariance"),
+        ({"response": np.zeros(3), "covariance": np.ones((3, 1, 1))}, ShapeError, "covariance"),
+    ],
+)
+def test_bad_matrix_responses(changes, error, field):
+    with pytest.raises(error) as raised:
+        matrix_response(**changes)
+    assert raised.value.field == field
+
+
+def test_methods_for_one_input_and_output_refuse_more():
+    structure = RationalStructure(1, 0)
+    data = matrix_response()
+    for call in (
+        lambda: RationalFit("absolute").estimate(structure, data),
+        lambda: levy(structure, data),
+        lambda: residual_and_jacobian(structure, np.ones(2), data),
+    ):
+        with pytest.raises(MisuseError, match="one channel at a time") as raised:
+            call()
+        assert raised.value.field == "response"

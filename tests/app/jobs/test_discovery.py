@@ -18,7 +18,7 @@ def test_every_task_keeps_to_the_rules(kind: str) -> None:
 
 
 def test_the_four_kinds_of_the_service_are_there() -> None:
-    assert {"experiment", "identification", "design", "signals"} <= KINDS.keys()
+    assert {"experiment", "identification", "state_space_identification", "design", "signals"} <= KINDS.keys()
 
 
 def test_the_same_kind_twice_is_refused() -> None:

@@ -1,0 +1,1 @@
+"""State-space models whose matrices depend on the operating point, from frequency responses, one estimator a file."""

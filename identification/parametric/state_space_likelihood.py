@@ -1,0 +1,211 @@
+"""Maximum likelihood of a parametric state-space model on frequency responses, from a start."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Annotated, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from identification.arrays import ComplexArray, FloatArray
+from identification.errors import MisuseError, NotIdentifiableError
+from identification.least_squares import LeastSquaresSolution, levenberg_marquardt
+from identification.outcome import Outcome, TestResult
+from identification.parameter_varying import ParameterVaryingStateSpace
+from identification.parametric.pole_guarantee import fine_grid, grid
+from identification.parametric.state_space_residuals import StateSpaceParameters, residual_and_jacobian, whitener
+from identification.parametric.triangular import triangular_factor
+from identification.pole_regions.inequality import PoleRegion
+from identification.response_tests import real_count, variance_inflation
+from identification.signals import FrequencyResponse
+from identification.whiteness import chi_square
+
+PRECISION = 3e-5  # the search ends when the misfit could fall by less than this squared
+EFFECTIVE = 1e-7  # smaller changes of the response, relative to the largest, are taken for none
+
+
+@dataclass(frozen=True, eq=False)
+class LikelihoodEstimate:
+    """A model with the covariance (k, k) of all its entries θ, ordered as `StateSpaceParameters` does.
+
+    The covariance is singular: the state basis is arbitrary, and the n² directions in which only it changes have none.
+    What does not depend on the basis has the covariance that any basis gives, as `response_covariance` says.
+    `noise_variance`: 1 when the data state variances, else the estimated variance of their noise.
+    """
+
+    model: ParameterVaryingStateSpace
+    covariance: FloatArray
+    noise_variance: float
+    outcome: Outcome
+    tests: tuple[TestResult, ...]
+
+    def response_covariance(self, points: ArrayLike, omega: FloatArray) -> FloatArray:
+        """Covariance of (Re, Im) of each entry of G at points (M, s) and ω (F,), as (M, F, n_y, n_u, 2, 2)."""
+        parameters = StateSpaceParameters(self.model)
+        results = []
+        for point in self.model.dependence.points(points):
+            gradient = parameters.gradient(self.model, tuple(point), omega)
+            pair = np.stack([gradient.real, gradient.imag], axis=2)
+            results.append(np.einsum("fcik,kl,fcjl->fcij", pair, self.covariance, pair, optimize=True))
+        shape = (len(results), len(omega), self.model.output_count, self.model.input_count, 2, 2)
+        return np.asarray(np.reshape(results, shape))
+
+
+@dataclass(frozen=True)
+class StateSpaceLikelihood:
+    """All entries of A_j, B_j, C_j, D_j by maximum likelihood on all responses together.
+
+        min_θ Σ_m Σ_i ‖W_i vec(Ĝ_i − G(p_m, ω_i; θ))‖²                          [PintelonSchoukens2012, Chapter 9]
+
+    The search moves in data-driven local coordinates, the directions of θ that change the responses, chosen anew in
+    every round [McKelvey2004]. With a `region` no step is taken after which a pole leaves it at the operating points
+    of a grid; a proof for those between is not given. Where the entries can do more than the plant needs, some
+    directions are hardly determined and the covariance, exact to first order in the noise, is too optimistic.
+    """
+
+    kind: ClassVar[str] = "state_space_likelihood"
+    data: ClassVar[type] = FrequencyResponse
+
+    region: Annotated[PoleRegion | None, "where all poles must stay, None for anywhere"] = None
+    margin: Annotated[float, "how far inside the region, as largest eigenvalue of its matrix inequality"] = 1e-6
+    rounds: Annotated[int, "most changes of the local coordinates"] = 10
+    max_iterations: Annotated[int, "most iterations of each round"] = 30
+
+    def estimate(
+        self, start: ParameterVaryingStateSpace, experiments: Sequence[FrequencyResponse]
+    ) -> LikelihoodEstimate:
+        """The refined model, with a test of fit against χ² where the variances are known.
+
+        Raises NotIdentifiableError for fewer real numbers than parameters, MisuseError for a start outside the region
+        or of another sample time or size than the data.
+        """
+        self._check(start, experiments)
+        parameters, whiteners = StateSpaceParameters(start), [whitener(data) for data in experiments]
+        theta = parameters.vector(start)
+        iterations, cost = 0, np.inf
+        for _ in range(self.rounds):
+            solution, chart = self._round(parameters, theta, experiments, whiteners)
+            theta, iterations = theta + chart @ solution.x, iterations + solution.outcome.iterations
+            if solution.outcome.ok or solution.cost > cost * (1 - PRECISION**2):
+                break
+            cost = solution.cost
+        return _estimate(parameters, theta, chart, solution, experiments, iterations)
+
+    def _round(
+        self,
+        parameters: StateSpaceParameters,
+        theta: FloatArray,
+        experiments: Sequence[FrequencyResponse],
+        whiteners: Sequence[ComplexArray],
+    ) -> tuple[LeastSquaresSolution, FloatArray]:
+        """A search in the coordinates δ of θ + chart δ."""
+        jacobian = residual_and_jacobian(parameters, theta, experiments, whiteners)[1]
+        chart = _chart(jacobian)
+
+        def evaluate(delta: FloatArray) -> tuple[FloatArray, FloatArray]:
+            residual, full = residual_and_jacobian(parameters, theta + chart @ delta, experiments, whiteners)
+            return residual, full @ chart
+
+        def feasible(delta: FloatArray) -> bool:
+            return self._inside(parameters.model(theta + chart @ delta))
+
+        start = np.zeros(chart.shape[1])
+        inside = feasible if self.region is not None else None
+        return levenberg_marquardt(evaluate, start, inside, self.max_iterations, PRECISION), chart
+
+    def _inside(self, model: ParameterVaryingStateSpace) -> bool:
+        count = len(model.variables)
+        points = grid(model.variables, 65) if count == 1 else fine_grid(model.variables)
+        return self.region is None or bool(np.all(self.region.excess(model.poles(points)) < -self.margin))
+
+    def _check(self, start: ParameterVaryingStateSpace, experiments: Sequence[FrequencyResponse]) -> None:
+        for data in experiments:
+            ours, theirs = (start.sample_time, start.d.shape[1:]), (data.sample_time, data.matrices.shape[1:])
+            if ours != theirs:
+                raise MisuseError(
+                    f"sample time and outputs × inputs are {ours} in the start and {theirs} in the data at"
+                    f" {data.operating_point}; they must agree",
+                    "start",
+                )
+        freedom = _freedom(start, experiments)
+        if freedom < 0:
+            raise NotIdentifiableError(
+                f"the responses hold {-freedom} real numbers fewer than the model has free parameters; measure more"
+                " lines or operating points, or choose a lower order",
+                "frequencies",
+            )
+        if not self._inside(start):
+            raise MisuseError(
+                "poles of the start lie outside the region, or closer to its edge than the margin; start from a model"
+                " estimated with this region",
+                "start",
+            )
+
+    @classmethod
+    def example(cls) -> "StateSpaceLikelihood":
+        """A small one, for the conformance tests."""
+        return cls()
+
+
+def _chart(jacobian: FloatArray) -> FloatArray:
+    """The directions of θ (k, r) that change the residual, from its Jacobian (R, k), each changing it by one."""
+    norms = np.linalg.norm(jacobian, axis=0)
+    scale = 1 / np.maximum(norms, 1e-12 * norms.max())
+    _, sizes, directions = np.linalg.svd(triangular_factor(jacobian * scale))
+    kept = sizes > EFFECTIVE * sizes[0]
+    return np.asarray(scale[:, None] * (directions[: len(sizes)][kept] / sizes[kept, None]).T)
+
+
+def _undetermined(
+    parameters: StateSpaceParameters, theta: FloatArray, experiments: Sequence[FrequencyResponse]
+) -> bool:
+    """Whether θ can change so that the responses stay as they are where measured, but not elsewhere in the range."""
+    model, omega = parameters.model(theta), experiments[0].frequencies[:: max(len(experiments[0]) // 40, 1)]
+    places = grid(model.variables, 9 if len(model.variables) == 1 else 4)
+    elsewhere = _real(np.concatenate([parameters.gradient(model, tuple(p), omega) for p in places]))
+    measured = _real(
+        np.concatenate([parameters.gradient(model, d.operating_point, d.frequencies) for d in experiments])
+    )
+    return _rank(np.concatenate([measured, elsewhere])) > _rank(measured)
+
+
+def _real(gradient: ComplexArray) -> FloatArray:
+    flat = gradient.reshape(-1, gradient.shape[-1])
+    return np.concatenate([flat.real, flat.imag])
+
+
+def _rank(jacobian: FloatArray) -> int:
+    return len(_chart(jacobian).T)
+
+
+def _freedom(model: ParameterVaryingStateSpace, experiments: Sequence[FrequencyResponse]) -> int:
+    size = len(StateSpaceParameters(model).vector(model)) - model.order**2
+    count: int = sum(real_count(data) * _entries(data) for data in experiments)
+    return count - size
+
+
+def _entries(data: FrequencyResponse) -> int:
+    return int(data.output_count * data.input_count)
+
+
+def _estimate(
+    parameters: StateSpaceParameters,
+    theta: FloatArray,
+    chart: FloatArray,
+    solution: LeastSquaresSolution,
+    experiments: Sequence[FrequencyResponse],
+    iterations: int,
+) -> LikelihoodEstimate:
+    model = parameters.model(theta)
+    freedom = _freedom(model, experiments)
+    stated = all(data.variance is not None for data in experiments)
+    inflation = max(variance_inflation(data.variance_degrees_of_freedom) for data in experiments)
+    variance = 1.0 if stated or not freedom else solution.cost / freedom
+    covariance = inflation * variance * chart @ solution.covariance @ chart.T
+    exact = stated and all(data.variance_degrees_of_freedom is None for data in experiments)
+    tests = (chi_square("lack of fit", solution.cost, freedom),) if exact and freedom else ()
+    outcome = Outcome(solution.outcome.status, solution.outcome.advice, iterations)
+    if _undetermined(parameters, theta, experiments):
+        advice = "the data do not determine the model between the operating points; measure at more of them"
+        outcome = Outcome("not_identifiable", advice, iterations)
+    return LikelihoodEstimate(model, covariance, variance, outcome, tests)

@@ -1,0 +1,69 @@
+"""Polynomials in z that are orthonormal on the measured lines."""
+
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+
+from identification.arrays import ComplexArray, FloatArray
+from identification.errors import NotIdentifiableError
+
+CANCELLED = 0.5  # of the squared length of z φ_i, which is one
+
+
+@dataclass(frozen=True, eq=False)
+class OrthonormalPolynomials:
+    """φ_0 … φ_{q−1} with real coefficients and deg φ_i = i, orthonormal on the lines z_k, k = 1 … F.
+
+        1/F Σ_k Re φ_i(z_k)* φ_j(z_k) = δ_ij,   φ_0 = 1,   z φ_i = Σ_{j ≤ i+1} h_ji φ_j
+
+    They span the rows z^i of the block Vandermonde matrix [Akcay2008, Algorithm 2] and take their place, because the
+    powers themselves are nearly dependent where the lines lie close together. Built by Arnoldi's recursion, with a
+    second orthogonalisation where the first one cancels. `values` (q, F); `shift`: the h_ji as (q, q), the part of
+    z φ_{q−1} beyond φ_{q−1} left out. Multiplication by z preserves the norm on |z| = 1, so that ‖shift‖ ≤ 1.
+    """
+
+    values: ComplexArray
+    shift: FloatArray
+
+    @classmethod
+    def on(cls, z: ComplexArray, count: int) -> Self:
+        """The first `count` of them on z (F,); raises NotIdentifiableError where the lines cannot tell them apart."""
+        values = np.empty((count, len(z)), dtype=np.complex128)
+        shift = np.zeros((count, count))
+        values[0] = 1.0
+        for i in range(count):
+            following = z * values[i]
+            shift[: i + 1, i] = _orthogonalise(following, values[: i + 1])
+            if i + 1 < count:
+                norm = np.linalg.norm(following) / np.sqrt(len(z))
+                if norm < 1e-13:
+                    raise NotIdentifiableError(
+                        f"the lines determine polynomials up to degree {i} only; measure more or better separated"
+                        " frequencies or use fewer block rows",
+                        "frequencies",
+                    )
+                shift[i + 1, i] = norm
+                np.divide(following, norm, out=values[i + 1])
+        return cls(values, shift)
+
+    def elsewhere(self, z: ComplexArray) -> ComplexArray:
+        """The same polynomials on other lines z (F',), by their recursion, as (q, F')."""
+        values = np.empty((len(self.shift), len(z)), dtype=np.complex128)
+        values[0] = 1.0
+        for i in range(len(self.shift) - 1):
+            following = z * values[i] - self.shift[: i + 1, i] @ values[: i + 1]
+            np.divide(following, self.shift[i + 1, i], out=values[i + 1])
+        return values
+
+
+def _orthogonalise(vector: ComplexArray, basis: ComplexArray) -> FloatArray:
+    """Subtracts the projection of a vector (F,) on an orthonormal basis (i, F) in place; its coefficients (i,)."""
+    real_vector, real_basis = vector.view(np.float64), basis.view(np.float64)
+    total = real_basis @ real_vector / len(vector)
+    real_vector -= total @ real_basis
+    if total @ total > CANCELLED:
+        part = real_basis @ real_vector / len(vector)
+        real_vector -= part @ real_basis
+        total += part
+    return total
