@@ -54,10 +54,7 @@ def payload(
     return {
         "plant": plant.as_json(),
         "request": request.as_json(),
-        "experiments": [
-            {"document": experiment.as_json(), "arrays": arrays}
-            for experiment, arrays in experiments
-        ],
+        "experiments": [{"document": experiment.as_json(), "arrays": arrays} for experiment, arrays in experiments],
     }
 
 
