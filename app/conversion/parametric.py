@@ -27,7 +27,7 @@ from identification.parametric.estimate import ParametricEstimate, RegionReport,
 from identification.parametric.pole_guarantee import fine_grid, worst_excess
 from identification.parametric.state_space_likelihood import LikelihoodEstimate
 from identification.signals import FrequencyResponse
-from identification.subspace.estimate import SubspaceEstimate
+from identification.subspace.result import SubspaceEstimate
 
 
 @dataclass(frozen=True, eq=False)

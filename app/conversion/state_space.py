@@ -28,7 +28,7 @@ from identification.parameter_varying import ParameterVaryingStateSpace
 from identification.parametric.estimate import ResponseError
 from identification.scheduling import ParameterDependence
 from identification.state_space import StateSpace
-from identification.subspace.estimate import SubspaceEstimate
+from identification.subspace.result import SubspaceEstimate
 
 
 def requested_state_space(

@@ -8,6 +8,7 @@ from typing import Any
 import typer
 from rich.console import Console
 
+from app.conversion.plants import is_state_space
 from app.errors import ProblemError
 from app.json_pointer import field_pointer
 from app.offline import results
@@ -15,10 +16,12 @@ from app.offline.documents import checked, load, section
 from app.offline.experiments import experiments_of
 from app.offline.workplace import DESIGN_ID, MODEL_ID, PLANT_ID, Workplace, stored, workplace
 from app.schemas.designs import Design, DesignRequest
+from app.schemas.experiments import Experiment
 from app.schemas.models import Model, ModelRequest, StatedModelRequest
 from app.schemas.plants import Plant, PlantRequest
 from app.schemas.signals import Signals, SignalsRequest
-from app.services import designs, models, plants, signals
+from app.schemas.state_space import StateSpaceModelRequest
+from app.services import designs, models, plants, signals, state_space_models
 from identification.errors import MisuseError
 
 Command = Callable[[Path, Path], None]
@@ -54,10 +57,11 @@ def identify(file: Path, output: Path) -> None:
         experiments = experiments_of(place, plant, section(content, "experiments"), file.parent)
         names = [experiment.id for experiment, _ in experiments]
         asked = {"plantId": PLANT_ID, "experimentIds": names, **section(content, "model")}
-        request = checked(ModelRequest, asked, "/model")
         by_name = {experiment.id: (experiment, arrays) for experiment, arrays in experiments}
+        kind = StateSpaceModelRequest if is_state_space(plant.structure) else ModelRequest
+        request: StateSpaceModelRequest | ModelRequest = checked(kind, asked, "/model")
         chosen = [by_name[name] for name in request.experiment_ids if name in by_name]
-        found = place.run("identification", models.payload(plant, request, chosen))
+        found = place.run(*_identification(plant, request, chosen))
     model = Model.model_validate(stored(found.document, MODEL_ID, plantId=PLANT_ID, jobId=None))
     results.write_model(output, model, [experiment for experiment, _ in chosen])
 
@@ -76,6 +80,15 @@ def design(file: Path, output: Path) -> None:
         results.write_design(output, made)
         if "signals" in content:
             _signals(place, made, checked(SignalsRequest, content["signals"] or {}, "/signals"), output)
+
+
+def _identification(
+    plant: Plant, request: StateSpaceModelRequest | ModelRequest, experiments: list[tuple[Experiment, str]]
+) -> tuple[str, dict[str, Any]]:
+    """The task that identifies the model asked for, and what it gets."""
+    if isinstance(request, StateSpaceModelRequest):
+        return state_space_models.TASK, state_space_models.payload(plant, request, experiments)
+    return "identification", models.payload(plant, request, experiments)
 
 
 def _signals(place: Workplace, design: Design, request: SignalsRequest, output: Path) -> None:

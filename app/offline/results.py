@@ -16,16 +16,18 @@ from app.schemas.designs import Design
 from app.schemas.experiments import Experiment
 from app.schemas.models import Model
 from app.schemas.signals import Signals
+from app.schemas.state_space import StateSpaceResult
 
 
 def write_model(folder: Path, model: Model, experiments: Sequence[Experiment]) -> None:
-    """model.json, model.npz (theta, covariance, operating points and local coefficients), experiments.json."""
+    """model.json, model.npz (theta, covariance, local coefficients or matrices), experiments.json."""
     _write(folder, "model.json", model)
-    arrays = {
-        "theta": np.array(model.theta),
-        "operatingPoints": np.array([local.operating_point for local in model.local_models]),
-        "zeta": np.array([local.zeta for local in model.local_models]),
-    }
+    arrays = {"theta": np.array(model.theta)}
+    if model.state_space is None:
+        arrays["operatingPoints"] = np.array([local.operating_point for local in model.local_models])
+        arrays["zeta"] = np.array([local.zeta for local in model.local_models])
+    else:
+        arrays |= _matrices(model.state_space)
     if model.covariance is not None:
         arrays["covariance"] = np.array(model.covariance)
     (folder / "model.npz").write_bytes(npz_file.write(arrays))
@@ -36,6 +38,17 @@ def write_model(folder: Path, model: Model, experiments: Sequence[Experiment]) -
     for name, value, deviation in zip(model.parameter_names, model.theta, deviations, strict=True):
         table.add_row(name, f"{value:.6g}", f"{deviation:.3g}")
     _say(folder, table)
+
+
+def _matrices(found: StateSpaceResult) -> dict[str, NDArray[Any]]:
+    """a, b, c, d of each basis function, and those of each local model as a1, b1, …, a2, …"""
+    sources = [("", found.matrices), *((str(i + 1), local) for i, local in enumerate(found.local_models))]
+    return {
+        f"{name}{number}": np.array(getattr(source, name))
+        for number, source in sources
+        if source is not None
+        for name in "abcd"
+    }
 
 
 def write_design(folder: Path, design: Design) -> None:

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from pydantic.alias_generators import to_camel
 
 from app.container import Container
 from app.conversion.misuse import pointing
@@ -74,10 +75,10 @@ def _check_estimators(request: StateSpaceModelRequest, structure: StateSpaceStru
             raise UnprocessableError.at(
                 "/structure", "a parameter-varying model needs an order; state it as `order` of the structure"
             )
-        fields = {"block_rows": "blockRows", "region": "region", "margin": "margin", "grid_count": "gridCount"}
-        pointers = {name: f"/parametricEstimator/{field}" for name, field in fields.items()}
+        asked = request.parametric_estimator
+        pointers = {name: f"/parametricEstimator/{to_camel(name)}" for name in type(asked).model_fields}
         with pointing({**pointers, "order": "/structure"}, default="/parametricEstimator"):
-            request.parametric_estimator.build(order=order)
+            asked.build(order=order)
 
 
 def _check_block_rows(estimator: Any, order: int | None, pointer: str) -> None:

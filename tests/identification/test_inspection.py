@@ -109,3 +109,15 @@ def test_a_frequency_response():
     assert (bare.spacing, bare.variance_known, bare.relative_deviation) == ("linear", False, None)
     assert len(bare.warnings) == 2
     assert inspect(FrequencyResponse([1.0, 1.1, 5.0, 5.3], np.ones(4), (0.0,))).spacing in ("linear", "irregular")
+
+
+def test_matrices_are_judged_by_their_norms():
+    omega = np.linspace(0.1, 3.0, 30)
+    response = np.zeros((30, 2, 2), dtype=complex)
+    response[:, 0, 0], response[:, 1, 0] = 3.0, 4.0j
+    seen = inspect(FrequencyResponse(omega, response, (0.0,), 1.0, np.full((30, 2, 2), 0.0625)))
+    assert (seen.count, seen.spacing) == (30, "linear")
+    assert seen.relative_deviation == pytest.approx(0.1)
+    assert seen.warnings == ()
+    with pytest.raises(MisuseError, match="zero at every frequency"):
+        inspect(FrequencyResponse(omega, 0 * response, (0.0,), 1.0))

@@ -4,6 +4,8 @@ import dataclasses
 from collections.abc import Sequence
 from typing import Any
 
+from pydantic.alias_generators import to_camel
+
 from app import __version__
 from app.conversion.experiments import kept_measurement
 from app.conversion.extremes import within_doubles
@@ -15,13 +17,14 @@ from app.conversion.state_space import requested_state_space
 from app.jobs.task import TaskContext, TaskResult
 from app.schemas.experiments import Experiment
 from app.schemas.plants import Plant
+from app.schemas.plug_ins import PlugInDocument
 from app.schemas.state_space import StateSpaceModelRequest
 from identification.errors import MisuseError
 from identification.parametric.estimate import ParametricEstimate
 from identification.parametric.state_space_likelihood import LikelihoodEstimate
 from identification.scheduling import ParameterDependence
 from identification.signals import FrequencyResponse, Measurement
-from identification.subspace.estimate import SubspaceEstimate
+from identification.subspace.result import SubspaceEstimate
 
 KIND = "state_space_identification"
 OF_DATA = ("frequencies", "response", "variance", "covariance", "experiments", "operating_points")
@@ -66,11 +69,12 @@ def _local(
 ) -> list[SubspaceEstimate]:
     if request.subspace_estimator is None:
         return []
-    estimator, estimates = request.subspace_estimator.build(order=order), []
+    asked, estimates = request.subspace_estimator, []
+    estimator = asked.build(order=order)
     for i, response in enumerate(data):
         context.progress(0.1 + 0.3 * i / len(data), f"operating point {i + 1} of {len(data)}")
         try:
-            with field_named(_fields("/subspaceEstimator", f"/experimentIds/{i}"), f"/experimentIds/{i}"):
+            with field_named(_fields(asked, "/subspaceEstimator", f"/experimentIds/{i}"), f"/experimentIds/{i}"):
                 estimates.append(estimator.estimate(response))
         except MisuseError as error:
             where = ", ".join(f"{value:g}" for value in response.operating_point)
@@ -88,8 +92,9 @@ def _parametric(
     if request.parametric_estimator is None:
         return None
     context.progress(0.4, "the parameter-varying model")
-    with field_named(_fields("/parametricEstimator", "/experimentIds"), "/experimentIds"):
-        found: ParametricEstimate = request.parametric_estimator.build(order=order).estimate(dependence, data)
+    asked = request.parametric_estimator
+    with field_named(_fields(asked, "/parametricEstimator", "/experimentIds"), "/experimentIds"):
+        found: ParametricEstimate = asked.build(order=order).estimate(dependence, data)
     return found
 
 
@@ -103,18 +108,16 @@ def _refined(
     if request.refinement is None or not found.outcome.ok:
         return None
     context.progress(0.6, "refinement")
-    with field_named({**_fields("/refinement", "/experimentIds"), "start": "/refinement"}, "/experimentIds"):
+    fields = _fields(request.refinement, "/refinement", "/experimentIds")
+    with field_named({**fields, "start": "/refinement"}, "/experimentIds"):
         refined: LikelihoodEstimate = request.refinement.build().estimate(found.model, data)
     return refined
 
 
-def _fields(estimator: str, data: str) -> dict[str, str]:
-    """Where the arguments that misuse names stand in the request."""
-    options = {"block_rows": "blockRows", "block_columns": "blockColumns", "max_order": "maxOrder"}
-    options |= {"zero_order_hold": "zeroOrderHold", "weighting": "weighting", "centre": "centre"}
-    options |= {"margin": "margin", "region": "region", "grid_count": "gridCount", "rounds": "rounds"}
-    places = {name: f"{estimator}/{option}" for name, option in options.items()}
-    return {**places, **dict.fromkeys(OF_DATA, data), "order": "/structure", "dependence": "/basis"}
+def _fields(estimator: PlugInDocument, pointer: str, data: str) -> dict[str, str]:
+    """Where the arguments that misuse names stand in the request: options, data, or the structure."""
+    options = {name: f"{pointer}/{to_camel(name)}" for name in type(estimator).model_fields}
+    return {**options, **dict.fromkeys(OF_DATA, data), "order": "/structure", "dependence": "/basis"}
 
 
 def _document(

@@ -54,6 +54,47 @@ def test_a_response_comes_back_exactly(kind: str) -> None:
     assert data.sample_time == 0.5
 
 
+@pytest.mark.parametrize("kind", ["csv", "npz", "mat"])
+@pytest.mark.parametrize("shape", [(9, 2, 3), (9, 1, 2), (9, 2, 1), (2, 2, 2), (1, 2, 2)])
+def test_a_response_with_several_channels_comes_back_exactly(kind: str, shape: tuple[int, int, int]) -> None:
+    generator = np.random.default_rng(1)
+    arrays = {
+        "frequenciesRadPerSecond": np.linspace(0.1, 2.0, shape[0]),
+        "response": generator.normal(size=shape) + 1j * generator.normal(size=shape),
+        "variance": generator.uniform(1, 2, size=shape),
+    }
+    stated = Statements((1.0,), channels=shape[1:])
+    data = read_measurement(arrays_file(arrays, kind), kind, stated)
+    assert isinstance(data, FrequencyResponse)
+    np.testing.assert_array_equal(data.response, arrays["response"])
+    np.testing.assert_array_equal(data.variance, arrays["variance"])
+
+
+def test_matlab_keeps_no_last_axis_of_one_and_puts_frequencies_last() -> None:
+    response = np.random.default_rng(3).normal(size=(7, 3, 1)) * (1 + 2j)
+    stated = Statements((1.0,), channels=(3, 1))
+    for array in (response[:, :, 0], np.moveaxis(response, 0, 2)):
+        data = read_measurement(
+            matlab(True, w=np.arange(1.0, 8.0), response=array, other=np.ones((2, 2))), "mat", stated
+        )
+        assert isinstance(data, FrequencyResponse)
+        np.testing.assert_array_equal(data.response, response)
+
+
+@pytest.mark.parametrize(
+    "header",
+    [
+        "w,re_y1_u1,im_y1_u1,re_y1_u1 ",
+        "w,re_y1_u2,im_y1_u2,x",
+        "w,re_y1_u1,im_y1_u1,responseRe",
+        "w,re_y0_u1,im_y0_u1,x",
+    ],
+)
+def test_columns_that_leave_entries_open_or_double_are_refused(header: str) -> None:
+    with pytest.raises(FileError):
+        read_measurement(f"{header}\n1,2,3,4\n".encode(), "csv", POINT)
+
+
 @pytest.mark.parametrize("compressed", [False, True])
 def test_files_of_other_programs_are_read(compressed: bool) -> None:
     generator = np.random.default_rng(2)

@@ -10,6 +10,7 @@ from typer.testing import CliRunner
 
 from app.cli import application
 from app.files import csv_file
+from tests.support import responses
 from tests.support.paper import DEVIATIONS, GRID, NOISE_VARIANCE, PLANT, THETA, fir, played
 
 RUNNER = CliRunner()
@@ -75,6 +76,26 @@ def test_identify_reads_files_and_design_takes_its_model(tmp_path: Path, designi
     code, output = run("design", second)
     assert code == 0, output
     assert json.loads((tmp_path / "results" / "design.json").read_text())["totalEnergy"] < 3600
+
+
+def test_identify_finds_state_space_models_too(tmp_path: Path) -> None:
+    experiments = []
+    for point in responses.POINTS:
+        data = responses.measured(point)
+        content = responses.npz(omega=data.frequencies, response=data.response, ts=1.0)
+        (tmp_path / f"at-{point:g}.npz").write_bytes(content)
+        experiments.append({"file": f"at-{point:g}.npz", "operatingPoint": [point]})
+    estimators = {"parametricEstimator": {"kind": "parametric_subspace"}}
+    estimators["subspaceEstimator"] = {"kind": "frequency_subspace"}
+    file = tmp_path / "measured.json"
+    file.write_text(json.dumps({"plant": responses.PLANT, "experiments": experiments, "model": estimators}))
+    code, output = run("identify", file)
+    assert code == 0, output
+    model = json.loads((tmp_path / "results" / "model.json").read_text())
+    assert max(error["relativeError"] for error in model["stateSpace"]["errors"]) < 1e-9
+    with np.load(tmp_path / "results" / "model.npz") as arrays:
+        assert (arrays["a"].shape, arrays["b4"].shape) == ((2, 3, 3), (3, 2))
+        assert abs(np.linalg.eigvals(arrays["a"][0])).max() < 1
 
 
 BAD = {

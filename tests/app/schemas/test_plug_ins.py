@@ -8,7 +8,7 @@ import pytest
 from fastapi.testclient import TestClient
 from pydantic import BaseModel, ValidationError, create_model
 
-from app.schemas.families import BASES, FAMILIES, LOCAL_ESTIMATORS, TARGETS
+from app.schemas.families import BASES, FAMILIES, LOCAL_ESTIMATORS, PARAMETRIC_ESTIMATORS, TARGETS
 from app.schemas.plug_ins import PlugInFamily
 from identification.registry import discover
 
@@ -93,6 +93,20 @@ def test_a_document_becomes_the_plug_in(family: PlugInFamily) -> None:
 def test_bad_documents_are_refused(family: PlugInFamily, change: dict[str, object]) -> None:
     with pytest.raises(ValidationError):
         family.models["fourier"].model_validate({"kind": "fourier", "order": 2, **change})
+
+
+def test_options_can_be_plug_ins_themselves() -> None:
+    Holder: type[BaseModel] = create_model("Holder", estimator=(PARAMETRIC_ESTIMATORS.union, ...))
+    parts = [{"kind": "disc", "radius": 0.9}, {"kind": "half_plane", "side": "right"}]
+    estimator = {"kind": "parametric_subspace", "region": {"kind": "intersection", "regions": parts}}
+    document = Holder.model_validate({"estimator": estimator}).estimator
+    built = document.build(order=2)
+    assert (built.order, built.region.regions[0].radius, built.region.real_interval) == (2, 0.9, (0.0, 0.9))
+    nested = {**estimator, "region": {"kind": "intersection", "regions": [estimator["region"]]}}
+    for bad in (nested, {**estimator, "order": 2}):
+        with pytest.raises(ValidationError):
+            Holder.model_validate({"estimator": bad})
+    assert document.model_dump(by_alias=True)["region"]["regions"][0]["radius"] == 0.9
 
 
 def test_unions_of_several_are_told_apart_by_kind() -> None:
