@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from scipy.special import fdtrc
@@ -80,7 +81,7 @@ class _Judge:
         return lack_of_fit(name, energy, freedom, self._noise_freedom(chosen))
 
     def _noise_freedom(self, chosen: BoolArray) -> float:
-        parts = zip(self.rows.batches, self.rows.parts(chosen), strict=True)
+        parts = zip(self.rows.batches, self.rows.parts(chosen.astype(np.float64)), strict=True)
         return sum(batch.raw_freedom * float(part.sum()) / 2 for batch, part in parts)
 
 
@@ -187,7 +188,7 @@ def _bands(rows: Rows) -> list[tuple[str, BoolArray]]:
     inner = np.geomspace(bands[:, 0].min() * (1 - 1e-9), bands[:, 1].max() * (1 + 1e-9), BANDS + 1)
     edges = np.concatenate([[-1.0], inner, [np.inf]])
     found = []
-    for low, high in zip(edges[:-1], edges[1:], strict=True):
+    for low, high in pairwise(edges):
         chosen = [np.repeat(((b.omega > low) & (b.omega <= high))[None], len(b.points), axis=0) for b in rows.batches]
         if any(np.any(one & np.isfinite(b.variances)) for one, b in zip(chosen, rows.batches, strict=True)):
             found.append((f"{max(low, 0.0):.4g} … {high:.4g} rad/s", _spread(rows, chosen)))

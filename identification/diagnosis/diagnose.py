@@ -24,6 +24,8 @@ Verdict = Literal["nothing missing", "explained", "partly explained", "not in th
 DETECTION = 1.959963984540054 + 1.2815515655446004
 LEVEL = 0.05
 STRICT = 1e-3
+PARTLY = 0.3
+ALMOST = 0.98
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,6 +63,11 @@ class Diagnosis:
     def best(self) -> Evidence | None:
         """The announced effect with most weight."""
         return self.announced[0] if self.announced else None
+
+    @property
+    def confident(self) -> bool:
+        """Whether one effect has more than 95 % of the weight and leaves nothing that noise does not explain."""
+        return self.best is not None and self.best.weight > 1 - LEVEL and self.verdict == "explained"
 
 
 def rows_of(model: ExtendedModel, batches: Sequence[Batch]) -> Rows:
@@ -134,9 +141,9 @@ def _explained_share(base: Fit, announced: Sequence[Evidence]) -> float:
 def _verdict(before: TestResult, announced: Sequence[Evidence], remaining: TestResult, share: float) -> Verdict:
     if not announced:
         return "not in the library" if before.p_value < STRICT else "nothing missing"
-    if remaining.p_value >= STRICT or share >= 0.98:
+    if remaining.p_value >= STRICT or share >= ALMOST:
         return "explained"
-    return "partly explained" if share >= 0.5 else "not in the library"
+    return "partly explained" if share >= PARTLY else "not in the library"
 
 
 def confusability(scores: Sequence[Score]) -> FloatArray:

@@ -2,11 +2,12 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
 from identification.comparison.batch import EXCITED, Batch
-from identification.diagnosis.diagnose import Diagnosis, diagnose
+from identification.diagnosis.diagnose import ALMOST, STRICT, Diagnosis, diagnose
 from identification.extension.fit import Fit, fit
 from identification.extension.model import ExtendedModel
 from identification.places.place import Effect
@@ -68,6 +69,19 @@ def staircase(
             break
         steps.append(found)
     return tuple(steps)
+
+
+def conclusion(steps: Sequence[Step]) -> Literal["nothing missing", "explained", "not in the library"]:
+    """What the staircase has come to: effects explain what is missing only when the last model passes the test.
+
+    Where the size of the noise is not known there is no such test, and effects that were added count as explaining.
+    """
+    last, first = steps[-1].diagnosis, steps[0].diagnosis
+    excess = last.lack_of_fit.statistic - last.lack_of_fit.degrees_of_freedom
+    at_first = first.lack_of_fit.statistic - first.lack_of_fit.degrees_of_freedom
+    if last.lack_of_fit.p_value >= STRICT or excess <= (1 - ALMOST) * at_first:
+        return "explained" if len(steps) > 1 else "nothing missing"
+    return "not in the library"
 
 
 def _step(found: Fit, batches: Sequence[Batch], held_out: Sequence[Batch], diagnosis: Diagnosis) -> Step:

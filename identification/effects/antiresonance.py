@@ -27,7 +27,7 @@ class Antiresonance(Factor):
         FurtherParameter(
             "frequency", "frequency", (0.1, 0.2, 0.3, 0.4, 0.45, 0.5, 0.55, 0.6, 0.65, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95)
         ),
-        FurtherParameter("damping", "number", (0.05, 0.3)),
+        FurtherParameter("damping", "number", (0.05, 0.3), highest=0.7),
     )
 
     frequency: float = 1.0

@@ -15,6 +15,7 @@ class Backlash(Actuator):
 
     kind: ClassVar[str] = "backlash"
     title: ClassVar[str] = "backlash"
+    domain: ClassVar[str] = "mechanical"
     unit: ClassVar[str] = "1 (share of the force that passes the play)"
     source: ClassVar[str] = "[Nordin2002, Section 2]"
     oversampling: ClassVar[int] = 8

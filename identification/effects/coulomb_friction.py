@@ -17,6 +17,7 @@ class CoulombFriction(Feedback):
 
     kind: ClassVar[str] = "coulomb_friction"
     title: ClassVar[str] = "Coulomb friction"
+    domain: ClassVar[str] = "mechanical"
     unit: ClassVar[str] = "input unit"
     source: ClassVar[str] = "[Armstrong1994, Section 2]"
     oversampling: ClassVar[int] = 8

@@ -19,12 +19,13 @@ class CpeArc(Parallel):
 
     kind: ClassVar[str] = "cpe_arc"
     title: ClassVar[str] = "arc with constant-phase element"
+    domain: ClassVar[str] = "impedance"
     unit: ClassVar[str] = "output unit per input unit"
     source: ClassVar[str] = "[Barsoukov2005, Section 2.1]"
     sign: ClassVar[int] = 1
     parameters: ClassVar[tuple[FurtherParameter, ...]] = (
         FurtherParameter("time", "time", (0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8)),
-        FurtherParameter("exponent", "number", (0.55, 0.75)),
+        FurtherParameter("exponent", "number", (0.55, 0.75), lowest=0.4, highest=0.95),
     )
 
     time: float = 1.0

@@ -13,6 +13,7 @@ class CubicDamping(Feedback):
 
     kind: ClassVar[str] = "cubic_damping"
     title: ClassVar[str] = "cubic damping"
+    domain: ClassVar[str] = "mechanical"
     unit: ClassVar[str] = "input unit per (output unit/s)³"
     source: ClassVar[str] = "[Nayfeh1979, Section 3.3]"
 

@@ -13,6 +13,7 @@ class CubicStiffness(Feedback):
 
     kind: ClassVar[str] = "cubic_stiffness"
     title: ClassVar[str] = "cubic stiffness"
+    domain: ClassVar[str] = "mechanical"
     unit: ClassVar[str] = "input unit per output unit³"
     source: ClassVar[str] = "[Nayfeh1979, Section 2.3]"
 

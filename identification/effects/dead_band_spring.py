@@ -16,6 +16,7 @@ class DeadBandSpring(Feedback):
 
     kind: ClassVar[str] = "dead_band_spring"
     title: ClassVar[str] = "stop beyond a gap"
+    domain: ClassVar[str] = "mechanical"
     unit: ClassVar[str] = "input unit per output unit"
     source: ClassVar[str] = "[Nayfeh1979, Section 3.3]"
     oversampling: ClassVar[int] = 4

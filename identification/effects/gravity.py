@@ -19,6 +19,7 @@ class Gravity(Feedback):
 
     kind: ClassVar[str] = "gravity"
     title: ClassVar[str] = "sinusoidal restoring force"
+    domain: ClassVar[str] = "mechanical"
     unit: ClassVar[str] = "input unit"
     source: ClassVar[str] = "[Nayfeh1979, Section 2.1]"
     parameters: ClassVar[tuple[FurtherParameter, ...]] = (

@@ -15,6 +15,7 @@ class Hysteresis(Feedback):
 
     kind: ClassVar[str] = "hysteresis"
     title: ClassVar[str] = "hysteresis (Bouc–Wen)"
+    domain: ClassVar[str] = "mechanical"
     unit: ClassVar[str] = "input unit"
     source: ClassVar[str] = "[Wen1976, (3)]"
     oversampling: ClassVar[int] = 8

@@ -15,6 +15,7 @@ class Inductance(Parallel):
 
     kind: ClassVar[str] = "inductance"
     title: ClassVar[str] = "series inductance"
+    domain: ClassVar[str] = "impedance"
     unit: ClassVar[str] = "output unit per input unit · s (H for V/A)"
     source: ClassVar[str] = "[Barsoukov2005, Section 2.1]"
     sign: ClassVar[int] = 1

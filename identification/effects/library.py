@@ -8,6 +8,7 @@ from identification.registry import discover
 
 
 @cache
-def library() -> tuple[Effect, ...]:
-    """An example of every effect."""
-    return tuple(cls.example() for _, cls in sorted(discover(identification.effects).items()))
+def library(domain: str | None = None) -> tuple[Effect, ...]:
+    """An example of every effect; with a `domain` ("mechanical", "impedance") those of it and the general ones."""
+    every = (cls.example() for _, cls in sorted(discover(identification.effects).items()))
+    return tuple(one for one in every if domain is None or one.domain in (domain, "general"))

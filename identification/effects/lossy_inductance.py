@@ -16,10 +16,13 @@ class LossyInductance(Parallel):
 
     kind: ClassVar[str] = "lossy_inductance"
     title: ClassVar[str] = "lossy inductance"
+    domain: ClassVar[str] = "impedance"
     unit: ClassVar[str] = "output unit per input unit · s^α"
     source: ClassVar[str] = "[Barsoukov2005, Section 2.1]"
     sign: ClassVar[int] = 1
-    parameters: ClassVar[tuple[FurtherParameter, ...]] = (FurtherParameter("exponent", "number", (0.4, 0.6, 0.8)),)
+    parameters: ClassVar[tuple[FurtherParameter, ...]] = (
+        FurtherParameter("exponent", "number", (0.4, 0.6, 0.8), lowest=0.3, highest=0.9),
+    )
 
     exponent: float = 0.6
 

@@ -13,6 +13,7 @@ class QuadraticDamping(Feedback):
 
     kind: ClassVar[str] = "quadratic_damping"
     title: ClassVar[str] = "quadratic damping"
+    domain: ClassVar[str] = "mechanical"
     unit: ClassVar[str] = "input unit per (output unit/s)²"
     source: ClassVar[str] = "[Nayfeh1979, Section 3.3]"
 

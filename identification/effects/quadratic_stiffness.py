@@ -13,6 +13,7 @@ class QuadraticStiffness(Feedback):
 
     kind: ClassVar[str] = "quadratic_stiffness"
     title: ClassVar[str] = "quadratic stiffness"
+    domain: ClassVar[str] = "mechanical"
     unit: ClassVar[str] = "input unit per output unit²"
     source: ClassVar[str] = "[Nayfeh1979, Section 2.3]"
 

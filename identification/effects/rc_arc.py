@@ -19,6 +19,7 @@ class RcArc(Parallel):
 
     kind: ClassVar[str] = "rc_arc"
     title: ClassVar[str] = "extra RC arc"
+    domain: ClassVar[str] = "impedance"
     unit: ClassVar[str] = "output unit per input unit"
     source: ClassVar[str] = "[Barsoukov2005, Section 2.1]"
     sign: ClassVar[int] = 1

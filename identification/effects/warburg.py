@@ -15,6 +15,7 @@ class Warburg(Parallel):
 
     kind: ClassVar[str] = "warburg"
     title: ClassVar[str] = "diffusion, infinite length"
+    domain: ClassVar[str] = "impedance"
     unit: ClassVar[str] = "output unit per input unit · s^{-1/2}"
     source: ClassVar[str] = "[Barsoukov2005, Section 2.1]"
     sign: ClassVar[int] = 1

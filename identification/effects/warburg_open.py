@@ -19,6 +19,7 @@ class WarburgOpen(Parallel):
 
     kind: ClassVar[str] = "warburg_open"
     title: ClassVar[str] = "diffusion, blocked end"
+    domain: ClassVar[str] = "impedance"
     unit: ClassVar[str] = "output unit per input unit"
     source: ClassVar[str] = "[Barsoukov2005, Section 2.1]"
     sign: ClassVar[int] = 1

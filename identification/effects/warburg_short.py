@@ -19,6 +19,7 @@ class WarburgShort(Parallel):
 
     kind: ClassVar[str] = "warburg_short"
     title: ClassVar[str] = "diffusion, open end"
+    domain: ClassVar[str] = "impedance"
     unit: ClassVar[str] = "output unit per input unit"
     source: ClassVar[str] = "[Barsoukov2005, Section 2.1]"
     sign: ClassVar[int] = 1

@@ -100,7 +100,7 @@ def _descend(current: Fit, step: FloatArray) -> Fit | None:
     before = float(current.residual @ current.residual)
     scaled = 1.0
     for _ in range(HALVINGS):
-        trial = _moved(current.model, scaled * step)
+        trial = _moved(current, scaled * step)
         try:
             found = _at(trial, current.rows, current.flows)
         except NoSteadyStateError:
@@ -112,8 +112,9 @@ def _descend(current: Fit, step: FloatArray) -> Fit | None:
     return None
 
 
-def _moved(model: ExtendedModel, step: FloatArray) -> ExtendedModel:
-    """The model after a step; further parameters are multiplied, amplitudes keep to their physical range."""
+def _moved(current: Fit, step: FloatArray) -> ExtendedModel:
+    """The model after a step; further parameters are multiplied, all keep to their physical range."""
+    model = current.model
     plant = model.base.plant_size
     values = model.parameters + step
     start = plant
@@ -121,7 +122,8 @@ def _moved(model: ExtendedModel, step: FloatArray) -> ExtendedModel:
     for one in model.effects:
         end = start + one.size
         further = slice(end, start + len(one.parameters()))
-        values[further] = old[further] * np.exp(np.clip(step[further], -0.7, 0.7))
+        moved = old[further] * np.exp(np.clip(step[further], -0.7, 0.7))
+        values[further] = np.clip(moved, *one.effect.limits(current.flows[0]))
         if one.degree == 0 and one.effect.sign:
             values[start:end] = np.maximum(one.effect.sign * values[start:end], 0.0) * one.effect.sign
         start = further.stop
@@ -143,7 +145,7 @@ def differences(current: Fit) -> FloatArray:
     for i, length in enumerate(size):
         step = np.zeros(len(size))
         step[i] = 0.1 / length if length > 0 else 0.0
-        moved = _moved(current.model, step) if i < current.model.base.plant_size else _free_move(current.model, step)
+        moved = _free_move(current.model, step)
         pairs = zip(current.rows.batches, current.flows, base, strict=True)
         change = [moved.respond(batch, flow.core).output - old for batch, flow, old in pairs]
         columns.append(current.rows.whiten(change) / (step[i] or 1.0))
@@ -153,6 +155,7 @@ def differences(current: Fit) -> FloatArray:
 def _free_move(model: ExtendedModel, step: FloatArray) -> ExtendedModel:
     values = model.parameters
     start = model.base.plant_size
+    values[:start] += step[:start]
     for one in model.effects:
         end, stop = start + one.size, start + len(one.parameters())
         values[start:end] += step[start:end]

@@ -13,7 +13,7 @@ from identification.arrays import ComplexArray, FloatArray
 from identification.comparison.batch import Batch
 from identification.models import RationalStructure
 
-Quantity = Literal["frequency", "time", "input", "output", "velocity", "number", "operating_point"]
+Quantity = Literal["frequency", "time", "input", "output", "velocity", "number"]
 
 
 @dataclass(frozen=True)
@@ -22,13 +22,16 @@ class FurtherParameter:
 
     `values` are relative to what the experiment offers: for a frequency 0 … 1 runs logarithmically from half the lowest
     to twice the highest excited frequency, a time is its inverse; levels are relative to the largest input, output or
-    velocity; an operating point is the place of a record; a number is absolute. `fitted`: False when only scanned.
+    velocity; a number is absolute. `fitted`: False when only scanned. `lowest`, `highest`: the physical range of a
+    number; frequencies and times are kept where the excited band, widened fourfold to each side, can show them.
     """
 
     name: str
     quantity: Quantity
     values: tuple[float, ...]
     fitted: bool = True
+    lowest: float = 0.0
+    highest: float = np.inf
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,7 +107,7 @@ class Flow:
             low, high = self.batch.band
             frequency = 0.5 * low * (4 * high / low) ** relative
             return float(frequency if quantity == "frequency" else 1 / frequency)
-        if quantity in ("number", "operating_point") or self.batch.signals is None:
+        if quantity == "number" or self.batch.signals is None:
             return relative
         signal = {"input": self.signals, "output": self.linear_signal, "velocity": self.core_velocity()}[quantity]
         return float(relative * abs(signal).max())
@@ -120,7 +123,7 @@ def derivative(spectra: ComplexArray, batch: Batch) -> ComplexArray:
 class Effect(ABC):
     """A physical effect with amplitude e; with e = 0 it does nothing. The fields are its further parameters.
 
-    `unit` of e in words, `sign` +1 where only e ≥ 0 is physical, `largest` the largest physical |e| (None: no bound),
+    `domain`: the kind of plant it belongs to; `unit` of e in words, `sign` +1 where only e ≥ 0 is physical, `largest` the largest physical |e| (None: no bound),
     `source` where it is described; `oversampling` of the time grid on which a force is computed in continuous time.
     """
 
@@ -129,6 +132,7 @@ class Effect(ABC):
     place: ClassVar[str]
     unit: ClassVar[str]
     source: ClassVar[str]
+    domain: ClassVar[str] = "general"
     sign: ClassVar[int] = 0
     largest: ClassVar[float | None] = None
     needs_records: ClassVar[bool] = False
@@ -171,6 +175,19 @@ class Effect(ABC):
         """The values of the fitted further parameters."""
         return np.array([getattr(self, name) for name in self.fitted_names()], dtype=np.float64)
 
+    def limits(self, flow: Flow) -> tuple[FloatArray, FloatArray]:
+        """The physical range of the fitted further parameters."""
+        ranges = [_range(parameter, flow) for parameter in self.parameters if parameter.fitted]
+        low, high = np.array(ranges, dtype=np.float64).reshape(-1, 2).T
+        return low, high
+
     def with_values(self, values: FloatArray) -> Self:
         """The same effect with other values of the fitted further parameters."""
         return dataclasses.replace(self, **dict(zip(self.fitted_names(), map(float, values), strict=True)))
+
+
+def _range(parameter: FurtherParameter, flow: Flow) -> tuple[float, float]:
+    if parameter.quantity in ("frequency", "time"):
+        ends = [flow.scale(parameter.quantity, relative) for relative in (0.0, 1.0)]
+        return min(ends) / 2, max(ends) * 2
+    return parameter.lowest, parameter.highest
