@@ -1,6 +1,6 @@
 """Arrays at the border: complex numbers as {"re": […], "im": […]}, and nothing that is not finite."""
 
-from typing import Annotated, Any
+from typing import Any
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -10,7 +10,6 @@ from identification.arrays import ComplexArray, FloatArray
 
 Vector = list[Double]
 Matrix = list[list[Double]]
-Frequencies = Annotated[list[Double], Field(min_length=1)]
 
 
 class ComplexVector(CamelModel):
@@ -43,8 +42,3 @@ def finite_or_none(value: float | None) -> float | None:
 def finite_list_or_none(values: FloatArray) -> Any:
     """The array as nested lists, or null when a part of it is not finite."""
     return values.tolist() if np.isfinite(values).all() else None
-
-
-def nullable_list(values: FloatArray) -> list[float | None]:
-    """A vector with null where there is no number."""
-    return [finite_or_none(value) for value in np.asarray(values, dtype=float)]

@@ -1,5 +1,6 @@
 """The command line: one function a command; what it needs is imported when it is called."""
 
+import os
 from pathlib import Path
 from typing import Annotated
 
@@ -57,7 +58,9 @@ def demo(
 
 
 def main() -> None:
-    """The program lpv-oed."""
+    """The program lpv-oed; the matrices are small, and more threads would only wait for each other."""
+    for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
+        os.environ.setdefault(variable, "1")
     application()
 
 

@@ -89,9 +89,16 @@ def _declare_problems(operation: Json) -> None:
         responses[status] = {"description": description, "content": {MEDIA_TYPE: {"schema": reference}}}
 
 
+def _without_null(schema: Json) -> Json:
+    branches = [branch for branch in schema.pop("anyOf") if branch != {"type": "null"}]
+    return schema | (branches[0] if len(branches) == 1 else {"anyOf": branches})
+
+
 def _polish(node: Any) -> None:
-    """Numbers are doubles; titles that only repeat the name of a property or parameter go."""
+    """Numbers are doubles; titles that only repeat a name go, and so do nulls that no parameter can carry."""
     if isinstance(node, dict):
+        if "in" in node and "anyOf" in node.get("schema", {}):
+            node["schema"] = _without_null(node["schema"])
         if node.get("type") == "number":
             node.setdefault("format", "double")
         repeated = [*node.get("properties", {}).values(), node["schema"] if "in" in node else None]

@@ -1,12 +1,12 @@
 """Turns everything that can go wrong in a request into a problem document."""
 
-import logging
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 from fastapi import FastAPI, Request, Response, params
 from fastapi.exceptions import RequestValidationError
 from starlette.exceptions import HTTPException
+from starlette.routing import Match
 
 from app.errors import (
     BadRequestError,
@@ -22,7 +22,7 @@ from app.schemas.common import FieldProblem
 from app.store.arrays import ArraysTooLargeError
 from identification.errors import MisuseError
 
-logger = logging.getLogger(__name__)
+METHODS = ("GET", "HEAD", "POST", "PUT", "PATCH", "DELETE")
 
 
 def add_problem_handlers(application: FastAPI) -> None:
@@ -47,7 +47,8 @@ async def _on_problem_error(request: Request, error: Exception) -> Response:
 
 async def _on_http_exception(request: Request, error: Exception) -> Response:
     assert isinstance(error, HTTPException)
-    return problem_response(problem_of_status(error.status_code, str(error.detail)), error.headers)
+    headers = {"Allow": ", ".join(_allowed_methods(request))} if error.status_code == 405 else error.headers
+    return problem_response(problem_of_status(error.status_code, str(error.detail)), headers)
 
 
 async def _on_misuse(request: Request, error: Exception) -> Response:
@@ -101,6 +102,13 @@ def _summary(fields: Sequence[FieldProblem]) -> str:
     first = fields[0]
     more = f", and {len(fields) - 1} more" if len(fields) > 1 else ""
     return f"{first.pointer or 'the body'}: {first.detail}{more}"
+
+
+def _allowed_methods(request: Request) -> list[str]:
+    """All methods of a path; the router itself names those of the first route only."""
+    scope = {"type": "http", "path": request.scope["path"], "root_path": "", "headers": []}
+    routes = request.app.routes
+    return [m for m in METHODS if any(route.matches(scope | {"method": m})[0] is Match.FULL for route in routes)]
 
 
 def _expected_media_type(request: Request) -> str | None:

@@ -12,14 +12,15 @@ from pathlib import Path
 
 import numpy as np
 
+from benchmarks.ghosh_example import DEPENDENCE, DEVIATIONS, GRID, NOISE_VARIANCE, STRUCTURE, THETA
+from identification.models import LpvModel
 from oed.design import design
 from oed.direct_lmi import direct_design
 from oed.problem import DesignProblem
 from oed.spectra.fir import FirSpectra
 from oed.targets.parameter_deviation import ParameterDeviation
-from tests.support.random_models import paper_model
 
-TARGET = ParameterDeviation((0.003, 0.001 / 3, 0.1 / 3, 0.01 / 3, 0.35 / 3, 0.04 / 3))
+MODEL = LpvModel(STRUCTURE, DEPENDENCE, THETA, np.zeros((6, 6)), NOISE_VARIANCE)
 
 
 def main() -> None:
@@ -43,7 +44,7 @@ def main() -> None:
 
 def compare(degree: int, runs: int) -> dict[str, float]:
     """Both solvers by turns; every time is that of one whole call from the same problem."""
-    problem = DesignProblem(paper_model(), np.arange(0, 8.25, 0.5)[:, None], (TARGET,), FirSpectra(degree), 1000)
+    problem = DesignProblem(MODEL, GRID, (ParameterDeviation(DEVIATIONS),), FirSpectra(degree), 1000)
     certified, direct = design(problem), direct_design(problem)
     pairs = [(timed(lambda: design(problem)), timed(lambda: direct_design(problem))) for _ in range(runs)]
     ratios = [slow / fast for fast, slow in pairs]

@@ -156,8 +156,8 @@ def _monic(coefficients: FloatArray, powers: ComplexArray) -> ComplexArray:
 def roots(coefficients: FloatArray) -> ComplexArray:
     """Zeros of x^m + c_1 x^{m−1} + … + c_m for coefficients c (…, m), as (…, m)."""
     order = coefficients.shape[-1]
-    if order == 0:
-        return np.zeros(coefficients.shape, dtype=np.complex128)
+    if order <= 1:
+        return np.asarray(-coefficients, dtype=np.complex128)
     companion = np.zeros((*coefficients.shape, order))
     companion[..., 0, :] = -coefficients
     companion[..., np.arange(1, order), np.arange(order - 1)] = 1.0

@@ -17,7 +17,9 @@ from oed.spectra.family import Block, Pricing
 
 Progress = Callable[[int, float], None]
 ACTIVE_TARGETS = 12
+MOST_AT_START = 200
 NEGLIGIBLE = 1e-3
+REMEMBERED = 1e-4
 CAP_SLACK = 1e-6
 FEASIBLE = 1e-7
 BOUNDLESS = 1e6
@@ -63,18 +65,23 @@ def least_energy(
     judges the gap: it may exceed `tolerance` after `max_iterations`. Good conditioning is the caller's: the information
     of flat spectra should be of the order of the unit matrix.
     """
-    start = [*pricing.flat(), *blocks]
+    flat = pricing.flat()
+    start = [*flat[:: 1 + len(flat) // MOST_AT_START], *blocks]
     if np.isfinite(caps).any():
         found = _within_caps(pricing, targets, caps, start)
         if isinstance(found, Shortfall):
             return found
         start = found
+    slow = False
     best = _Bounds(np.inf, 0.0, np.zeros_like(targets), np.zeros(len(caps)))
     active = np.arange(min(len(targets), ACTIVE_TARGETS))
     for iteration in range(1, max_iterations + 1):
-        master = solve_master(start, targets[active], caps, accuracy=max(1e-8, 0.01 ** (iteration + 1)))
-        offer = pricing.best(master.prices.sum(axis=0), 1 + master.cap_prices, start, master.weights)
-        best = best.improved(start, master, offer.worth, targets, active, caps)
+        accuracy = max(1e-8, 0.01 ** (iteration + 1))
+        master = solve_master(start, targets[active], caps, accuracy=accuracy)
+        weights = _remembered(master.weights, 100 * accuracy, slow)
+        offer = pricing.best(master.prices.sum(axis=0), 1 + master.cap_prices, start, weights)
+        earlier, best = best, best.improved(start, master, offer.worth, targets, active, caps)
+        slow = best.gap > earlier.gap / 5
         if progress is not None:
             progress(iteration, best.gap)
         if best.gap <= tolerance / 4 or not master.solved:
@@ -165,7 +172,7 @@ def _within_caps(
         charges = master.cap_prices + 1e-9 * master.cap_prices.max()
         offer = pricing.best(master.prices.sum(axis=0), charges, blocks, master.weights)
         if master.shortfall <= FEASIBLE:
-            return [*pricing.flat(), *offer.blocks]
+            return [*blocks, *offer.blocks]
         least = float(np.einsum("jab,jab", master.prices, targets) - limits @ np.maximum(offer.worth, 0.0))
         if least > FEASIBLE and master.shortfall - least <= 1e-3 * master.shortfall:
             return Shortfall(least)
@@ -189,6 +196,16 @@ def _needed_scale(total: FloatArray, targets: FloatArray) -> float:
     values, vectors = np.linalg.eigh(total)
     root = vectors / np.sqrt(np.maximum(values, 1e-14 * max(values[-1], 1e-300)))
     return float(np.linalg.eigvalsh(root.T @ targets @ root)[:, -1].max())
+
+
+def _remembered(weights: Sequence[FloatArray], least: float, everything: bool) -> list[FloatArray]:
+    """Weights without blocks of less energy than `least`; with all directions of a block above zero if asked for.
+
+    Directions of no weight are forgotten by the family, which keeps the master problem small; where progress is slow,
+    they are worth remembering.
+    """
+    floor = REMEMBERED if everything else 0.0
+    return [weight * (np.trace(weight) > least) + floor * np.eye(len(weight)) for weight in weights]
 
 
 def _with_violated(active: IntArray, blocks: Sequence[Block], master: MasterSolution, targets: FloatArray) -> IntArray:

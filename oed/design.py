@@ -11,7 +11,7 @@ from identification.outcome import Outcome
 from identification.signals import OperatingPoint
 from oed.box import refine_over_box
 from oed.column_generation import CertifiedSpectra, Progress, Shortfall, least_energy
-from oed.duration import required_samples
+from oed.duration import required_samples, supplementary_points
 from oed.information import noise_information, require_stable
 from oed.problem import DesignProblem
 from oed.scaling import ScaledProblem, scaled
@@ -144,13 +144,16 @@ def _described(
     gap = 1 - lower_bound / energy if energy > 0 else 0.0
     points = np.array([experiment.operating_point for experiment in experiments]).reshape(-1, problem.points.shape[1])
     per_sample = noise_information(problem.model, points)
-    needed = required_samples(per_sample, targets[:, k:, k:] - problem.prior[k:, k:])
+    noise_targets = targets[:, k:, k:] - problem.prior[k:, k:]
+    needed = required_samples(per_sample, noise_targets)
     samples = max(problem.samples, int(np.floor(needed)) + 1) if np.isfinite(needed) else problem.samples
     information = problem.prior.copy()
     information[:k, :k] += learnt
     information[k:, k:] += samples * per_sample.sum(axis=0)
     return Design(
-        _outcome(problem, gap, needed, iterations),
+        _outcome(problem, gap, iterations)
+        if np.isfinite(needed)
+        else _noise_undetermined(problem, per_sample.sum(axis=0), noise_targets),
         tuple(experiments),
         float(energy),
         float(lower_bound),
@@ -178,12 +181,14 @@ def _covariance(information: FloatArray, k: int) -> FloatArray:
     return covariance
 
 
-def _outcome(problem: DesignProblem, gap: float, needed_samples: float, iterations: int) -> Outcome:
-    if not np.isfinite(needed_samples):
-        advice = (
-            "the chosen operating points cannot determine the noise model: add records without input at further points"
-        )
-        return Outcome("infeasible", advice, iterations)
+def _noise_undetermined(problem: DesignProblem, known: FloatArray, targets: FloatArray) -> Outcome:
+    further = supplementary_points(noise_information(problem.model, problem.points), known, targets)
+    where = "; ".join(", ".join(f"{value:g}" for value in problem.points[m]) for m in further)
+    remedy = f"record without input at ({where}) as well" if further else "allow more operating points"
+    return Outcome("infeasible", f"the designed experiments cannot determine the noise model: {remedy}")
+
+
+def _outcome(problem: DesignProblem, gap: float, iterations: int) -> Outcome:
     if gap > problem.tolerance:
         advice = f"a gap of {gap:.1e} remains; the experiments meet the targets, but could take that much less energy"
         return Outcome("not_converged", advice, iterations)

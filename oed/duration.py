@@ -22,3 +22,20 @@ def required_samples(noise_information: FloatArray, targets: FloatArray) -> floa
         return np.inf
     root = vectors / np.sqrt(values) / scale[:, None]
     return float(max(np.linalg.eigvalsh(root.T @ targets @ root)[:, -1].max(), 0.0))
+
+
+def supplementary_points(noise_information: FloatArray, total: FloatArray, targets: FloatArray) -> list[int]:
+    """Operating points at which records without input, added to `total` (k_H, k_H), make a finite duration suffice.
+
+    Chosen one by one, the most informative first, from X^H (M, k_H, k_H); empty when even all of them do not suffice.
+    """
+    if not np.isfinite(required_samples(noise_information + total / len(noise_information), targets)):
+        return []
+    scale = np.sqrt(np.diagonal(noise_information.sum(axis=0)))
+    candidates, known = noise_information / np.outer(scale, scale), total / np.outer(scale, scale)
+    chosen: list[int] = []
+    while not np.isfinite(required_samples(known[None], targets / np.outer(scale, scale))):
+        sums = known + candidates + 1e-9 * np.eye(len(scale))
+        chosen.append(int(np.argmax(np.linalg.slogdet(sums)[1])))
+        known = known + candidates[chosen[-1]]
+    return chosen

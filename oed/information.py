@@ -10,6 +10,7 @@ from identification.models import LpvModel
 
 LARGEST_GRID = 2**18
 CONTINUOUS_GRID = 2**14
+PRODUCTS_AT_ONCE = 2**23
 
 
 def sensitivity(model: LpvModel, points: ArrayLike, omega: FloatArray) -> ComplexArray:
@@ -33,7 +34,6 @@ def noise_information(model: LpvModel, points: ArrayLike) -> FloatArray:
     if transfer.size == 0:
         return np.zeros((len(transfer), transfer.shape[2], transfer.shape[2]))
     zeta = model.coefficients(points)
-
     grid = _circle(model, points, 0, 1.0 if model.structure.sample_time is None else model.structure.sample_time)
     weighted = model.structure.noise_gradient(zeta, grid) / model.structure.noise_response(zeta, grid)[:, None, :]
     mean = _cosine_moments(np.swapaxes(weighted, 1, 2), 0)[:, 0]
@@ -42,7 +42,10 @@ def noise_information(model: LpvModel, points: ArrayLike) -> FloatArray:
 
 def sensitivity_moments(model: LpvModel, points: ArrayLike, degree: int, sample_time: float) -> FloatArray:
     """(1/2π) ∫ Re(a a*) cos(iΩ) dΩ, Ω = ω · sample_time in (−π, π), i = 0 … degree, as (M, degree + 1, k_G, k_G)."""
-    return _cosine_moments(sensitivity(model, points, _circle(model, points, degree, sample_time)), degree)
+    p, grid = model.dependence.points(points), _circle(model, points, degree, sample_time)
+    at_once = max(1, PRODUCTS_AT_ONCE // (len(grid) * model.plant_size**2))
+    parts = (p[start : start + at_once] for start in range(0, len(p), at_once))
+    return np.concatenate([_cosine_moments(sensitivity(model, part, grid), degree) for part in parts])
 
 
 def _circle(model: LpvModel, points: ArrayLike, degree: int, sample_time: float) -> FloatArray:

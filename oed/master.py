@@ -128,8 +128,14 @@ def _solve(
     cost: FloatArray, matrix: FloatArray, right: FloatArray, cones: list[object], accuracy: float
 ) -> clarabel.DefaultSolution:
     return clarabel.DefaultSolver(
-        _no_quadratic(len(cost)), cost, csc_array(matrix), right, cones, _settings(accuracy)
+        _no_quadratic(len(cost)), cost, _columns(matrix), right, cones, _settings(accuracy)
     ).solve()
+
+
+def _columns(matrix: FloatArray) -> csc_array:
+    columns, rows = np.nonzero(matrix.T)
+    starts = np.searchsorted(columns, np.arange(matrix.shape[1] + 1))
+    return csc_array((matrix[rows, columns], rows, starts), shape=matrix.shape)
 
 
 @cache

@@ -68,7 +68,7 @@ def searched_model(request: DesignRequest, model: LpvModel) -> LpvModel:
     if not isinstance(box, Box):
         return model
     variables = model.dependence.variables
-    model.dependence.points([box.minimum, box.maximum])
+    model.dependence.points(_rectangular([box.minimum, box.maximum]))
     ranges = zip(box.minimum, box.maximum, strict=True)
     narrowed = tuple(
         replace(variable, minimum=low, maximum=high) for variable, (low, high) in zip(variables, ranges, strict=True)

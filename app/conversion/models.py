@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from app.arrays import ComplexVector, finite_list_or_none, finite_or_none
+from app.conversion.extremes import finite
 from app.conversion.plants import lpv_model, parameter_dependence, rational_structure
 from app.schemas.models import (
     LocalModelDocument,
@@ -102,15 +103,18 @@ def _relative_error(estimate: LocalEstimate, data: Measurement | None) -> float 
 
 
 def range_documents(model: LpvModel) -> dict[str, Any]:
-    """`stable` over the range of the scheduling variables, and `poles` for one variable."""
+    """`stable` over the range of the scheduling variables, and `poles` for one variable.
+
+    Raises RangeError where coefficients or poles are too large for a number.
+    """
     variables = model.dependence.variables
     count = POLE_POINTS if len(variables) == 1 else max(2, int(STABILITY_POINTS ** (1 / len(variables))))
     axes = [np.linspace(v.minimum, v.maximum, count) for v in variables]
     points = np.array(list(product(*axes)))
-    coefficients = model.coefficients(points)
+    coefficients = finite(model.coefficients(points), "coefficients")
     poles = []
     if len(variables) == 1 and model.structure.n_a > 0:
-        pairs = zip(points, model.structure.poles(coefficients), strict=True)
+        pairs = zip(points, finite(model.structure.poles(coefficients), "poles"), strict=True)
         poles = [PolesAtPoint(operating_point=p.tolist(), poles=ComplexVector.of(values)) for p, values in pairs]
     return {"stable": bool(np.all(model.structure.stable(coefficients))), "poles": poles}
 

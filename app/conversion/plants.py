@@ -113,8 +113,3 @@ def lpv_model(
     else:
         matrix = np.array(covariance, dtype=float)
     return LpvModel(structure, dependence, np.array(theta, dtype=float), matrix, noise_variance)
-
-
-def require_operating_point(dependence: ParameterDependence, point: Sequence[float]) -> None:
-    """Raises ShapeError or RangeError when a point does not fit the scheduling variables."""
-    dependence.points([list(point)])

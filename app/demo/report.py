@@ -49,7 +49,7 @@ def _facts(story: Story) -> tuple[Fact, ...]:
         Fact(f"{significant(more, 4)} {unit}", "input energy without a design, for the same accuracy"),
         Fact(f"{points} {task.VELOCITY.unit}", "operating points chosen"),
         Fact(significant(designed.gap, 1), "certified gap to the least energy"),
-        Fact(percent(story.accuracy.largest_share), "of the standard deviation asked for, at worst"),
+        Fact(percent(story.worst_share), "of the σ asked for, in the worst direction"),
     )
 
 
@@ -132,11 +132,10 @@ def _model(story: Story) -> Section:
 
 
 def _reached(story: Story) -> Section:
-    share = story.accuracy.largest_share
     text = (
-        f"At worst a parameter has {percent(share)} of the standard deviation asked for. Standard deviations reached"
-        " are estimated from the data, so they scatter a little around those that the design expected; the actual error"
-        " is one draw and should stay within two standard deviations in nineteen cases of twenty.",
+        f"In the worst direction of the parameter space σ is {percent(story.worst_share)} of what was asked."
+        " The σ reached are estimated from the data, so they scatter a little around those that the design expected;"
+        " the actual error is one draw and should stay within 2 σ in nineteen cases of twenty.",
     )
     return Section("Asked and reached", text, (estimate_table(story.final), accuracy(story.accuracy)))
 

@@ -39,11 +39,12 @@ SPARKS = 32
 
 def run_demo(folder: Path, seed: int, console: Console) -> Path:
     """Walks the loop, writes report.html into the folder and returns its path."""
+    folder.mkdir(parents=True, exist_ok=True)
     terminal = Terminal(console, STEPS)
     story = tell(seed, terminal)
     terminal.step("Report")
     path = write(demo_report(story), folder / "report.html")
-    terminal.say(f"[bold]{path}[/bold] (open it in a browser; it needs no network)")
+    terminal.path(path, "Open it in a browser; it needs no network.")
     return path
 
 
@@ -64,13 +65,14 @@ def tell(seed: int, terminal: Terminal) -> Story:
 
 
 def verdict(story: Story) -> str:
-    """What was reached, in a sentence."""
-    share = story.accuracy.largest_share
-    met = "Every parameter is as accurate as asked" if share <= 1 else "Not every parameter is as accurate as asked"
+    """What was reached, in a few sentences."""
+    unit, share = task.AXES.energy_unit, story.worst_share
+    met = "The model is as accurate as asked" if share <= 1 else "The model is not yet as accurate as asked"
+    more = significant(story.designed.alternatives[-1][1], 4)
     return (
-        f"{met} (the worst has {percent(share)} of its σ). The second experiment took"
-        f" {significant(story.second.energy, 4)} {task.AXES.energy_unit}; more of the first would have taken"
-        f" {significant(story.designed.alternatives[-1][1], 4)} {task.AXES.energy_unit}."
+        f"{met}: in the worst direction of the parameter space σ is {percent(share)} of what was asked. The"
+        f" second experiment took {significant(story.second.energy, 4)} {unit};"
+        f" more of the first would have taken {more} {unit}."
     )
 
 

@@ -77,6 +77,12 @@ class Story:
         return Accuracy(task.PARAMETERS, task.ASKED, expected, reached, error)
 
     @property
+    def worst_share(self) -> float:
+        """The largest σ reached over that asked for, over all directions of the parameter space: √λ_max(R P_θ)."""
+        covariance = self.final.model.covariance / np.outer(task.ASKED, task.ASKED)
+        return float(np.sqrt(np.linalg.eigvalsh(covariance)[-1]))
+
+    @property
     def responses(self) -> tuple[FrequencyResponse, ...]:
         """Frequency responses measured in the second experiment."""
         return tuple(PeriodicAverage(drop_periods=1).estimate(record) for record in self.second.records)

@@ -2,8 +2,10 @@
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from pathlib import Path
 
 from rich.console import Console
+from rich.markup import escape
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table as RichTable
 
@@ -41,13 +43,18 @@ class Terminal:
         for line in self._console.render_str(text, highlight=False).wrap(self._console, width):
             self._console.print(INDENT, line, sep="", highlight=False)
 
+    def path(self, path: Path, hint: str) -> None:
+        """A path, never broken into lines, and what to do with it."""
+        self._console.print(INDENT, f"[bold]{escape(str(path))}[/bold]", sep="", soft_wrap=True, highlight=False)
+        self.say(hint)
+
     def table(self, table: Table) -> None:
         """A table without lines."""
         shown = RichTable(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="dim")
         for i, column in enumerate(table.columns):
-            shown.add_column(column, justify="left" if i < table.text_columns else "right", overflow="fold")
+            shown.add_column(escape(column), justify="left" if i < table.text_columns else "right", overflow="fold")
         for row in table.rows:
-            shown.add_row(*row)
+            shown.add_row(*map(escape, row))
         self._indented(shown)
 
     def bars(self, values: Sequence[tuple[str, float]], unit: str) -> None:
@@ -57,7 +64,9 @@ class Terminal:
         for justify in ("left", "right", "left"):
             shown.add_column(justify=justify, no_wrap=justify != "left")
         for name, value in values:
-            shown.add_row(name, f"{significant(value, 4)} {unit}", f"[cyan]{bar(value / top, BAR_WIDTH)}[/cyan]")
+            shown.add_row(
+                escape(name), f"{significant(value, 4)} {unit}", f"[cyan]{bar(value / top, BAR_WIDTH)}[/cyan]"
+            )
         self._indented(shown)
 
     @contextmanager

@@ -11,6 +11,7 @@ from identification.arrays import ComplexArray, FloatArray
 from identification.signals import FrequencyResponse, Measurement, OperatingPoint, TimeRecord
 
 SAMPLE_TIME_TOLERANCE = 1e-3
+SHORTEST, LONGEST = 1e-15, 1e15  # sample times in seconds
 
 
 @dataclass(frozen=True)
@@ -67,6 +68,8 @@ def _sample_time(table: Table, stated: Statements) -> float:
     if stated.sample_time is None:
         if found is None:
             raise FileError("the file has no time; state sampleTimeSeconds")
+        if not SHORTEST <= found <= LONGEST:
+            raise FileError(f"the sample time of the file, {found:g} s, is not between {SHORTEST} and {LONGEST} s")
         return found
     if found is not None and abs(found / stated.sample_time - 1) > SAMPLE_TIME_TOLERANCE:
         raise FileError(f"the file was sampled every {found:g} s, but sampleTimeSeconds is {stated.sample_time:g}")

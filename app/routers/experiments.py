@@ -1,14 +1,14 @@
 """Experiments: bring data in, look at it, take it out."""
 
-from typing import Annotated, Any
+from typing import Annotated, Any, get_args
 
 from fastapi import APIRouter, File, Form, Query, Response, UploadFile
 from fastapi.exceptions import RequestValidationError
 from pydantic import ValidationError
 
 from app.dependencies import ContainerDependency, Cursor, IdempotencyKey, Limit, ResourcesDependency
-from app.files.stored import MEDIA_TYPES, Format
-from app.routers.downloads import FILE, file_response
+from app.files.stored import Format
+from app.routers.downloads import file_answer, file_response
 from app.schemas.experiments import Experiment, ExperimentData, ExperimentList, ExperimentRequest, FileFields
 from app.schemas.jobs import Job
 from app.services import experiment_data, experiments
@@ -105,10 +105,10 @@ def get_experiment_data(experimentId: str, container: ContainerDependency) -> Ex
     return experiment_data.as_document(container, experimentId)
 
 
-@router.get("/{experimentId}/file", response_class=Response, responses=FILE)
+@router.get("/{experimentId}/file", response_class=Response, responses=file_answer(*get_args(Format)))
 def get_experiment_file(
     experimentId: str, container: ContainerDependency, format: Annotated[Format, Query()] = "npz"
 ) -> Response:
     """The arrays of an experiment as a file that can be brought in again."""
     content = experiment_data.as_file(container, experimentId, format)
-    return file_response(content, f"experiment-{experimentId}.{format}", MEDIA_TYPES[format])
+    return file_response(content, f"experiment-{experimentId}", format)

@@ -1,12 +1,12 @@
 """Signals: look at them, take them out."""
 
-from typing import Annotated
+from typing import Annotated, get_args
 
 from fastapi import APIRouter, Query, Response
 
 from app.dependencies import ContainerDependency, Cursor, Limit, ResourcesDependency
-from app.files.stored import MEDIA_TYPES, SignalFormat
-from app.routers.downloads import FILE, file_response
+from app.files.stored import SignalFormat
+from app.routers.downloads import file_answer, file_response
 from app.schemas.signals import Signals, SignalsList
 from app.services import signal_files, signals
 
@@ -30,7 +30,7 @@ def get_signals(signalsId: str, resources: ResourcesDependency) -> Signals:
     return signals.get(resources, signalsId)
 
 
-@router.get("/{signalsId}/file", response_class=Response, responses=FILE)
+@router.get("/{signalsId}/file", response_class=Response, responses=file_answer(*get_args(SignalFormat)))
 def get_signal_file(
     signalsId: str,
     container: ContainerDependency,
@@ -39,4 +39,4 @@ def get_signal_file(
 ) -> Response:
     """All samples of one signal, every period: csv, npz and mat have time and input; wav has full scale at the peak."""
     content = signal_files.samples_file(container, signalsId, index, format)
-    return file_response(content, f"signal-{signalsId}-{index}.{format}", MEDIA_TYPES[format])
+    return file_response(content, f"signal-{signalsId}-{index}", format)

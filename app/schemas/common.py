@@ -1,7 +1,7 @@
 """What all documents share: names, numbers, times, problems."""
 
 from datetime import datetime
-from typing import Annotated
+from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field
 from pydantic.alias_generators import to_camel
@@ -9,8 +9,11 @@ from pydantic.alias_generators import to_camel
 Double = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 """A finite number; strings and booleans are refused."""
 
-Integer = Annotated[int, Field(strict=True)]
-"""A whole number; strings and booleans are refused."""
+LARGEST_INTEGER = 2**53 - 1
+Integer = Annotated[
+    int, Field(strict=True, ge=-LARGEST_INTEGER, le=LARGEST_INTEGER, json_schema_extra={"format": "int64"})
+]
+"""A whole number that every JSON reader keeps exactly; strings and booleans are refused."""
 
 Timestamp = Annotated[datetime, Field(strict=False)]
 """A moment in UTC, also read back from its ISO 8601 text."""
@@ -27,6 +30,10 @@ class CamelModel(BaseModel):
         strict=True,
         frozen=True,
     )
+
+    def as_json(self) -> dict[str, Any]:
+        """The document as plain JSON, as it is kept and sent."""
+        return self.model_dump(by_alias=True, mode="json")
 
 
 class FieldProblem(CamelModel):

@@ -9,7 +9,7 @@ from app.schemas.common import CamelModel, Double, Integer, Timestamp
 from app.schemas.experiments import Identifier
 from app.schemas.families import AccuracyTarget, SpectrumFamily
 from app.schemas.models import OutcomeDocument
-from app.schemas.plants import LongText, OperatingPoint, Positive, Text
+from app.schemas.plants import LongText, OperatingPoint, Positive, SampleTime, Text
 from app.schemas.plug_ins import named_union
 
 MAX_POINTS = 20_000
@@ -89,7 +89,7 @@ class DesignRequest(CamelModel):
     samples: Annotated[Integer, Field(ge=1, le=100_000_000)] = Field(
         description="samples of each local experiment; raised when the noise model needs more"
     )
-    sample_time_seconds: Positive | None = Field(
+    sample_time_seconds: SampleTime | None = Field(
         default=None, description="of the input to be played, for plants in continuous time"
     )
     band: Band | None = Field(default=None, description="frequencies that may be excited; null: all")

@@ -6,7 +6,7 @@ from pydantic import Field, RootModel
 
 from app.arrays import ComplexVector
 from app.schemas.common import CamelModel, Double, Integer, Timestamp
-from app.schemas.plants import LongText, OperatingPoint, Positive, Text
+from app.schemas.plants import LongText, OperatingPoint, Positive, SampleTime, Text
 
 Identifier = Annotated[str, Field(min_length=1, max_length=64)]
 Values = list[Double]
@@ -26,7 +26,7 @@ class TimeRecordRequest(ExperimentFields):
     """Input and output over time."""
 
     kind: Literal["timeRecord"]
-    sample_time_seconds: Positive
+    sample_time_seconds: SampleTime
     input: Values = Field(description="input, one value a sample, in the unit of the plant's input")
     output: Values = Field(description="output, as many values as the input")
     period_samples: Annotated[Integer, Field(ge=2)] | None = Field(
@@ -38,7 +38,7 @@ class FrequencyResponseRequest(ExperimentFields):
     """A measured frequency response."""
 
     kind: Literal["frequencyResponse"]
-    sample_time_seconds: Positive | None = Field(default=None, description="null for continuous time")
+    sample_time_seconds: SampleTime | None = Field(default=None, description="null for continuous time")
     frequencies_rad_per_second: Values = Field(description="distinct frequencies, zero or more")
     response: ComplexVector = Field(description="output over input, one value a frequency")
     variance: Values | None = Field(
@@ -58,7 +58,7 @@ class ExperimentRequest(
 class FileFields(ExperimentFields):
     """What is stated beside an uploaded file; it goes before what the file says."""
 
-    sample_time_seconds: Positive | None = Field(default=None, description="needed when the file has no time")
+    sample_time_seconds: SampleTime | None = Field(default=None, description="needed when the file has no time")
     period_samples: Annotated[Integer, Field(ge=2)] | None = Field(default=None, description="samples in one period")
     variable_group: Text = Field(
         default="", description="structure of a mat file that holds the arrays, e.g. data.run1"

@@ -8,7 +8,7 @@ from app.arrays import ComplexVector, Matrix, Vector
 from app.schemas.common import CamelModel, Double, Integer, Timestamp
 from app.schemas.experiments import Identifier
 from app.schemas.families import LocalEstimator, LpvEstimator, SpectralEstimator
-from app.schemas.plants import CoefficientBasis, LongText, ProductBasisDocument, Structure, Text
+from app.schemas.plants import CoefficientBasis, LongText, Positive, ProductBasisDocument, Structure, Text
 
 
 class ModelRequest(CamelModel):
@@ -42,7 +42,7 @@ class StatedModelRequest(CamelModel):
     name: Text = ""
     description: LongText = ""
     theta: Vector = Field(description="parameters, in the order of the plant's parameterNames")
-    noise_variance: Annotated[Double, Field(ge=0)] = Field(description="variance of the white noise e")
+    noise_variance: Positive = Field(description="variance of the white noise e")
     covariance: Matrix | None = Field(default=None, description="covariance of theta; null when it is not known")
 
 

@@ -13,6 +13,7 @@ Name = Annotated[str, Field(min_length=1, max_length=200)]
 LongText = Annotated[str, Field(max_length=10_000)]
 Order = Annotated[Integer, Field(ge=0, le=30)]
 Positive = Annotated[Double, Field(gt=0)]
+SampleTime = Annotated[Double, Field(ge=1e-15, le=1e15)]
 OperatingPoint = Annotated[list[Double], Field(min_length=1, max_length=10)]
 
 
@@ -36,10 +37,10 @@ class DiscreteTimeStructure(CamelModel):
     """Orders of y = (B/A) u + (C/D) e in discrete time."""
 
     time_domain: Literal["discrete"]
-    sample_time_seconds: Positive = Field(description="sample time of records and model")
+    sample_time_seconds: SampleTime = Field(description="sample time of records and model")
     na: Order = Field(description="order of A = 1 + a1 q + …, q the delay by one sample")
     nb: Order = Field(description="order of B = q^nk (b0 + b1 q + … + b_nb q^nb)")
-    nk: Order = Field(default=0, description="samples of delay")
+    nk: Annotated[Integer, Field(ge=0, le=10_000)] = Field(default=0, description="samples of delay")
     nc: Order = Field(default=0, description="order of C = 1 + c1 q + …")
     nd: Order = Field(default=0, description="order of D = 1 + d1 q + …")
     delay: bool = Field(default=False, description="estimate a further delay tau in seconds")
@@ -52,7 +53,7 @@ class ContinuousTimeStructure(CamelModel):
     na: Order = Field(description="order of A = x^na + a1 x^(na−1) + … + a_na")
     nb: Order = Field(description="order of B = b0 x^nb + … + b_nb; it may exceed na")
     delay: bool = Field(default=False, description="estimate a delay tau in seconds")
-    frequency_scale_rad_per_second: Positive = Field(
+    frequency_scale_rad_per_second: Annotated[Double, Field(ge=1e-15, le=1e15)] = Field(
         default=1.0, description="frequency that coefficients are scaled by; choose one in the middle of the data"
     )
 

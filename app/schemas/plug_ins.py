@@ -49,7 +49,7 @@ class PlugInFamily:
 
 def named_union(name: str, members: Iterable[type[Any]], discriminator: str) -> Any:
     """A union with a name of its own in the OpenAPI document; one member needs no discriminator."""
-    every = tuple(members) or (PlugInDocument,)
+    every = tuple(members)
     alias: Any = TypeAliasType
     if len(every) == 1:
         return alias(name, every[0])

@@ -38,13 +38,15 @@ def payload(plant: Plant, model: Model, request: DesignRequest) -> dict[str, Any
         points = candidate_points(request, searched.dependence)
     with pointing(POINTERS, default="/energyCaps"):
         energy_caps(request, points, searched.dependence)
+    if not model.noise_variance > 0:
+        raise UnprocessableError.at("/modelId", "the model has no noise, so any experiment would be accurate enough")
     if not known.structure.is_discrete and request.sample_time_seconds is None:
         raise UnprocessableError.at("/sampleTimeSeconds", "needed for a plant in continuous time")
     if request.use_prior_information and model.covariance is None:
         raise UnprocessableError.at("/usePriorInformation", "the model has no covariance")
     if request.band is not None and request.band.minimum_rad_per_second > request.band.maximum_rad_per_second:
         raise UnprocessableError.at("/band", "the band must rise")
-    return {"plant": _json(plant), "model": _json(model), "request": _json(request)}
+    return {"plant": plant.as_json(), "model": model.as_json(), "request": request.as_json()}
 
 
 def design_of(resource: Resource) -> Design:
@@ -61,8 +63,3 @@ def page(resources: ResourceRepository, plant_id: str | None, limit: int, cursor
     """Part of the list of designs."""
     found = resources.list(KIND, plant_id, limit, cursor)
     return DesignList(items=items(found, design_of), next_cursor=found.next_cursor)
-
-
-def _json(document: Any) -> dict[str, Any]:
-    result: dict[str, Any] = document.model_dump(by_alias=True, mode="json")
-    return result

@@ -61,7 +61,7 @@ def file_payload(request: FileFields, content: bytes, name: str) -> tuple[dict[s
     """What the task gets beside the hash of the file, and the file as an array of bytes."""
     if not content:
         raise UnprocessableError.at("/file", "the file is empty")
-    stated = request.model_dump(by_alias=True, mode="json")
+    stated = request.as_json()
     payload = {"source": file_format(name), "fileName": name[:200], "stated": stated}
     return payload, {"file": np.frombuffer(content, dtype=np.uint8)}
 

@@ -14,6 +14,7 @@ from app.services.plants import get as get_plant
 from app.store.resources import ResourceRepository
 from identification.arrays import FloatArray
 from identification.confidence import GainAndPhase, gain_and_phase
+from identification.errors import RangeError
 
 BANDS = ("magnitude_lower95", "magnitude_upper95", "phase_lower95_rad", "phase_upper95_rad")
 
@@ -32,10 +33,12 @@ def frequency_response(
             "/maximumRadPerSecond", f"lies above the Nyquist frequency {np.pi / step:.6g} rad/s", "query"
         )
     omega = np.geomspace(minimum, maximum, count) if minimum > 0 else np.linspace(minimum, maximum, count)
+    known = document.covariance is not None
     with pointing({}, "/operatingPoint", "query"):
         response = model.frequency_response([point], omega)[0]
-    known = document.covariance is not None
-    covariance = model.response_covariance([point], omega)[0] if known else np.zeros((count, 2, 2))
+        covariance = model.response_covariance([point], omega)[0] if known else np.zeros((count, 2, 2))
+        if not (np.isfinite(response).all() and np.isfinite(covariance).all()):
+            raise RangeError("the response is infinite in this band, e.g. at a pole; leave that frequency out")
     return ModelFrequencyResponse(
         model_id=model_id,
         operating_point=point,

@@ -24,10 +24,10 @@ def described(request: PlantRequest) -> dict[str, Any]:
     with pointing(POINTERS, default="/basis"):
         structure, dependence = structure_and_dependence(request)
     return {
-        **request.model_dump(by_alias=True, mode="json"),
+        **request.as_json(),
         "softwareVersion": __version__,
         "parameterNames": list(dependence.parameter_names(structure.coefficient_names)),
-        "neededOperatingPoints": max(dependence.sizes),
+        "neededOperatingPoints": dependence.needed_operating_points,
     }
 
 

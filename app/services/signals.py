@@ -3,6 +3,7 @@
 from typing import Any
 
 from app.container import Container
+from app.conversion.signals import lengths
 from app.errors import UnprocessableError
 from app.jobs.records import JobRecord
 from app.schemas.designs import Design
@@ -27,11 +28,16 @@ def payload(design: Design, request: SignalsRequest) -> dict[str, Any]:
     """What the task gets; raises UnprocessableError when there is nothing to play or too much."""
     if not design.experiments:
         raise UnprocessableError("the design has no experiments: " + (design.outcome.advice or "none are needed"))
-    if request.samples is not None and request.samples * (request.periods or 1) > MOST_SAMPLES:
-        raise UnprocessableError.at("/samples", f"at most {MOST_SAMPLES} samples are made for one signal")
+    for experiment in design.experiments:
+        period, periods = lengths(design, experiment, request)
+        if period * periods > MOST_SAMPLES:
+            detail = (
+                f"{period} samples in {periods} periods are too many; at most {MOST_SAMPLES} are made for one signal"
+            )
+            raise UnprocessableError.at("/samples", detail)
     if request.method == "filtered_noise" and any(e.spectrum.kind != "fir" for e in design.experiments):
         raise UnprocessableError.at("/method", "noise has no lines; play a design with line spectra as a multisine")
-    return {"design": _json(design), "request": _json(request)}
+    return {"design": design.as_json(), "request": request.as_json()}
 
 
 def signals_of(resource: Resource) -> Signals:
@@ -48,8 +54,3 @@ def page(resources: ResourceRepository, plant_id: str | None, limit: int, cursor
     """Part of the list of signals."""
     found = resources.list(KIND, plant_id, limit, cursor)
     return SignalsList(items=items(found, signals_of), next_cursor=found.next_cursor)
-
-
-def _json(document: Any) -> dict[str, Any]:
-    result: dict[str, Any] = document.model_dump(by_alias=True, mode="json")
-    return result

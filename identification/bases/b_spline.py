@@ -40,6 +40,8 @@ class BSpline:
         knots = np.array(self.interior_knots, dtype=float)
         if len(knots) and not (knots[0] > minimum and knots[-1] < maximum):
             raise RangeError(f"the interior knots must lie inside ({minimum}, {maximum})", "interior_knots")
+        if len(p) == 0:
+            return np.zeros((0, self.size))
         ends = self.degree + 1
         full = np.concatenate([np.full(ends, minimum), knots, np.full(ends, maximum)])
         design = Spline.design_matrix(np.clip(p, minimum, maximum), full, self.degree)

@@ -7,10 +7,11 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
-from identification.arrays import FloatArray, IntArray
+from identification.arrays import BoolArray, FloatArray, IntArray
 from identification.models import LpvModel
 
 NEARLY = 0.97
+MOST_OFFERED = 100
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,6 +70,14 @@ class Offer:
 
     worth: FloatArray
     blocks: list[Block]
+
+
+def foremost(candidates: BoolArray, excess: FloatArray) -> IntArray:
+    """The numbers of the candidates, or of the MOST_OFFERED of them that exceed their charge most."""
+    numbers = np.flatnonzero(candidates)
+    if len(numbers) > MOST_OFFERED:
+        numbers = numbers[np.argpartition(-excess[numbers], MOST_OFFERED)[:MOST_OFFERED]]
+    return numbers
 
 
 class SpectrumFamily(Protocol):

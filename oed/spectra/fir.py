@@ -12,8 +12,9 @@ from identification.arrays import FloatArray, IntArray
 from identification.errors import RangeError
 from identification.models import LpvModel
 from oed.information import sensitivity_moments
-from oed.spectra.family import NEARLY, Block, Offer
+from oed.spectra.family import NEARLY, Block, Offer, foremost
 
+LARGEST_DEGREE = 1000
 MOST_NEW = 3
 NEGLIGIBLE = 1e-5
 
@@ -60,8 +61,8 @@ class FirSpectra:
     degree: Annotated[int, "degree L of the FIR filter"]
 
     def __post_init__(self) -> None:
-        if self.degree < 0:
-            raise RangeError(f"the degree is {self.degree}; it must be zero or more", "degree")
+        if not 0 <= self.degree <= LARGEST_DEGREE:
+            raise RangeError(f"the degree is {self.degree}; it must lie between 0 and {LARGEST_DEGREE}", "degree")
 
     def pricing(
         self, model: LpvModel, points: ArrayLike, band: tuple[float, float] | None, sample_time: float
@@ -102,7 +103,7 @@ class FirPricing:
             kept = _active(block, weight)
             if len(kept):
                 shapes[block.point] = _orthonormal(shapes[block.point], kept) if block.point in shapes else kept
-        for m in np.flatnonzero(worth > NEARLY * charges).tolist():
+        for m in foremost(worth > NEARLY * charges, worth - charges).tolist():
             new = vectors[m][:, values[m] > NEARLY * max(charges[m], worth[m])][:, -MOST_NEW:].T
             shapes[m] = _orthonormal(shapes[m], new) if m in shapes else new
         return Offer(worth, self._blocks(shapes))

@@ -11,7 +11,9 @@ from identification.arrays import ComplexArray, FloatArray, IntArray
 from identification.errors import RangeError
 from identification.models import LpvModel
 from oed.information import sensitivity
-from oed.spectra.family import NEARLY, Block, Offer
+from oed.spectra.family import NEARLY, Block, Offer, foremost
+
+MOST_SENSITIVITIES = 2**26
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,6 +70,12 @@ class LineSpectra:
         if len(indices) == 0:
             raise RangeError("no line of the record lies in the frequency band; widen it or use more samples", "band")
         frequencies = np.asarray(indices * line_spacing, dtype=np.float64)
+        if len(frequencies) * np.shape(points)[0] * model.plant_size > MOST_SENSITIVITIES:
+            raise RangeError(
+                f"{len(frequencies)} lines at {np.shape(points)[0]} operating points are more than fits into memory;"
+                " use fewer samples per period, a narrower band, or fewer operating points",
+                "samples",
+            )
         return LinePricing(frequencies, indices, self.samples, sensitivity(model, points, frequencies))
 
     @classmethod
@@ -103,8 +111,10 @@ class LinePricing:
         offered = peak & (worth >= np.maximum(NEARLY * charges, 0.9 * highest)[:, None])
         in_use = [block for block, weight in zip(blocks, weights, strict=True) if weight[0, 0] > 1e-9]
         known = {(block.point, int(block.shapes[0, 0])) for block in in_use}
-        new = [self._block(m, f) for m, f in zip(*np.nonzero(offered), strict=True) if (m, f) not in known]
-        return Offer(highest, in_use + new)
+        best = foremost(offered.ravel(), (worth - charges[:, None]).ravel())
+        new = [divmod(index, worth.shape[1]) for index in best.tolist()]
+        new_blocks = [self._block(m, f) for m, f in new if (m, f) not in known]
+        return Offer(highest, in_use + new_blocks)
 
     def transformed(self, basis: FloatArray) -> "LinePricing":
         """The same for the parameters basis⁻¹ θ_G."""

@@ -62,7 +62,9 @@ def test_free_operating_points_stand_where_the_theory_puts_them(made: dict[str, 
 def test_expected_accuracy_meets_the_targets(made: dict[str, Json]) -> None:
     design = made["17 points, L = 10"]
     wanted = design["request"]["targets"][0]["standardDeviations"]
-    assert all(got <= asked * (1 + 1e-6) for got, asked in zip(design["expectedStandardDeviations"], wanted, strict=True))
+    assert all(
+        got <= asked * (1 + 1e-6) for got, asked in zip(design["expectedStandardDeviations"], wanted, strict=True)
+    )
     assert [b["what"] for b in made["at most 1000 a point"]["binding"]].count("cap") == 3
 
 

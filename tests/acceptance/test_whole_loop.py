@@ -7,8 +7,10 @@ import pytest
 
 from app.files import csv_file, mat_writer, npz_file
 from identification.arrays import FloatArray
+from identification.models import RationalStructure
+from identification.simulation import simulate
 from tests.support.api import Api, Json
-from tests.support.paper import DEVIATIONS, FIGURES, THETA, Figure, played, prepared
+from tests.support.paper import DEVIATIONS, FIGURES, PLANT, THETA, Figure, fir, played, prepared
 from tests.support.server import Server
 
 REPETITIONS = 20
@@ -200,3 +202,83 @@ def test_a_single_line_at_one_point_needs_the_joint_estimate(api: Api, design: J
     experiments = measured(api, {**lines, "plant": plant}, signals, np.random.default_rng(6))
     found = identified(api, design, experiments)
     assert least_information(found) >= 1 - 2 * SAMPLING_ERROR
+
+
+def test_a_plant_in_continuous_time_goes_round_the_loop(api: Api) -> None:
+    """Gain 2 + p, time constant 1 + p/2; periodic records become frequency responses, which are fitted."""
+    step, structure = 0.1, RationalStructure(n_a=1, n_b=0)
+    described = {
+        **PLANT,
+        "schedulingVariables": [{"name": "p", "minimum": 0.0, "maximum": 2.0}],
+        "structure": {"timeDomain": "continuous", "na": 1, "nb": 0},
+        "basis": {"factors": [{"kind": "polynomial", "degree": 2}]},
+    }
+    plant = api.post("/plants", described)
+    model = api.post(
+        "/models/stated", {"plantId": plant["id"], "theta": [1.0, -0.3, 0.0, 2.0, 0.0, 0.0], "noiseVariance": 0.01}
+    )
+    target = {"operatingPoints": [[0.0], [1.0], [2.0]], "minimumRadPerSecond": 0.1, "maximumRadPerSecond": 5.0}
+    asked = {
+        "plantId": plant["id"],
+        "modelId": model["id"],
+        "operatingPoints": {"kind": "gridAxes", "axes": [{"minimum": 0.0, "maximum": 2.0, "count": 5}]},
+        "targets": [{"kind": "response_deviation", **target, "standardDeviation": 0.01}],
+        "spectrumFamily": {"kind": "fir", "degree": 8},
+        "samples": 2000,
+        "sampleTimeSeconds": step,
+    }
+    design = api.made("/designs", asked)
+    signals = api.made(f"/designs/{design['id']}/signals", {"periods": 5})
+    generator, made = np.random.default_rng(8), []
+    for signal in signals["signals"]:
+        p = signal["operatingPoint"][0]
+        zeta = np.array([1 / (1 + p / 2), (2 + p) / (1 + p / 2)])
+        u = samples(api, signals, signal["index"])
+        y = simulate(structure, zeta, u, generator.normal(scale=0.1, size=len(u)), sample_time=step, periodic=True)
+        stated = {"operatingPoint": [p], "sampleTimeSeconds": step, "periodSamples": signal["periodSamples"]}
+        body = {"kind": "timeRecord", "plantId": plant["id"], **stated, "input": u.tolist(), "output": y.tolist()}
+        made.append(api.made("/experiments", body)["id"])
+    found = api.made(
+        "/models",
+        {
+            "plantId": plant["id"],
+            "experimentIds": made,
+            "spectralEstimator": {"kind": "periodic_average"},
+            "localEstimator": {"kind": "rational_fit"},
+            "lpvEstimator": {"kind": "joint_likelihood"},
+        },
+    )
+    assert found["outcome"]["status"] == "converged"
+    for p in (0.0, 1.0, 2.0):
+        band = {"minimumRadPerSecond": 0.1, "maximumRadPerSecond": 5.0, "count": 9}
+        response = api.get(f"/models/{found['id']}/frequency-response", operatingPoint=[p], **band)
+        truth = (2 + p) / (1 + 1j * np.array(response["frequenciesRadPerSecond"]) * (1 + p / 2))
+        error = np.array(response["response"]["re"]) + 1j * np.array(response["response"]["im"]) - truth
+        assert np.all(abs(error) < 0.06 * abs(truth))
+
+
+def test_two_scheduling_variables(api: Api) -> None:
+    variables = [
+        {"name": "speed", "unit": "m/s", "minimum": 0.0, "maximum": 4.0},
+        {"name": "load", "minimum": -1.0, "maximum": 1.0},
+    ]
+    basis = {"factors": [{"kind": "polynomial", "degree": 1}, {"kind": "chebyshev", "degree": 1}], "totalDegree": 1}
+    plant = api.post("/plants", {**PLANT, "schedulingVariables": variables, "basis": basis})
+    assert len(plant["parameterNames"]) == 9
+    assert plant["neededOperatingPoints"] == 3
+    theta = [-0.8, 0.05, 0.1, 5.0, -0.5, 1.0, -0.5, 0.0, 0.05]
+    model = api.post("/models/stated", {"plantId": plant["id"], "theta": theta, "noiseVariance": 0.1})
+    axes = [{"minimum": 0.0, "maximum": 4.0, "count": 3}, {"minimum": -1.0, "maximum": 1.0, "count": 3}]
+    asked = {
+        "plantId": plant["id"],
+        "modelId": model["id"],
+        "operatingPoints": {"kind": "gridAxes", "axes": axes},
+        "targets": [{"kind": "parameter_deviation", "standardDeviations": [0.05] * 9}],
+        "spectrumFamily": fir(5),
+        "samples": 500,
+    }
+    design = api.made("/designs", asked)
+    assert design["outcome"]["status"] == "converged"
+    assert design["gap"] <= 1e-4
+    assert all(len(experiment["operatingPoint"]) == 2 for experiment in design["experiments"])
+    assert max(design["expectedStandardDeviations"]) <= 0.05 * (1 + 1e-6)

@@ -58,6 +58,12 @@ def test_numbers_are_doubles_and_there_are_no_tuples(document: dict[str, Any]) -
     assert [node for node in found if "prefixItems" in node] == []
 
 
+def test_no_parameter_is_null(document: dict[str, Any]) -> None:
+    parameters = [parameter for _, operation in operations(document) for parameter in operation.get("parameters", ())]
+    assert {parameter["in"] for parameter in parameters} == {"path", "query", "header"}
+    assert [parameter for parameter in parameters if {"type": "null"} in parameter["schema"].get("anyOf", ())] == []
+
+
 def test_no_unused_and_no_missing_components(document: dict[str, Any]) -> None:
     schemas = document["components"]["schemas"]
     used = {node["$ref"].rpartition("/")[2] for node in nodes(document) if isinstance(node.get("$ref"), str)}

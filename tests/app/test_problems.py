@@ -34,6 +34,12 @@ class Shape(CamelModel):
 
 
 def _routes(application: FastAPI) -> None:
+    @application.get("/try/both")
+    def get_both() -> None: ...
+
+    @application.post("/try/both")
+    def post_both() -> None: ...
+
     @application.post("/try/body")
     def post_body(body: Shape) -> Shape:
         return body
@@ -42,7 +48,7 @@ def _routes(application: FastAPI) -> None:
     def post_file(file: Annotated[UploadFile, File()]) -> int:
         return file.size or 0
 
-    @application.get("/try/{what}")
+    @application.get("/fail/{what}")
     def get_error(what: str) -> None:
         errors: dict[str, Exception] = {
             "misuse": ShapeError("3 inputs, 4 outputs; give as many", "sampled_output"),
@@ -86,6 +92,10 @@ def pointers(trial: TestClient, body: object) -> set[str]:
         ({"sampleCount": 0}, {"/sampleCount"}),
         ({"sampleCount": "1"}, {"/sampleCount"}),
         ({"sampleCount": True}, {"/sampleCount"}),
+        ({"sampleCount": 1.5}, {"/sampleCount"}),
+        ({"sampleCount": 2**53}, {"/sampleCount"}),
+        ({"sampleCount": 10**400}, {"/sampleCount"}),
+        ({"sampleCount": 1e300}, {"/sampleCount"}),
         ({"sampleCount": 1, "sample/~count": 2}, {"/sample~1~0count"}),
         ({"sampleCount": -1, "extra": 1}, {"/sampleCount", "/extra"}),
         ({"sampleCount": 1, "shapes": 1}, {"/shapes"}),
@@ -154,23 +164,31 @@ def test_a_broken_form_is_a_bad_request(trial: TestClient) -> None:
 
 
 def test_misuse_is_unprocessable_and_names_the_field(trial: TestClient) -> None:
-    found = problem(trial.get("/try/misuse"), 422)
+    found = problem(trial.get("/fail/misuse"), 422)
     assert found.errors[0].pointer == "/sampledOutput"
     assert "give as many" in found.detail
 
 
 def test_other_errors_keep_their_status(trial: TestClient) -> None:
-    assert problem(trial.get("/try/conflict"), 409).instance == "/try/conflict"
-    assert problem(trial.get("/try/teapot"), 418).detail == "short and stout"
-    problem(trial.get("/try/large"), 422)
+    assert problem(trial.get("/fail/conflict"), 409).instance == "/fail/conflict"
+    assert problem(trial.get("/fail/teapot"), 418).detail == "short and stout"
+    problem(trial.get("/fail/large"), 422)
     problem(trial.get("/nowhere"), 404)
     found = trial.put("/try/body")
     problem(found, 405)
-    assert found.headers["allow"]
+    assert found.headers["allow"] == "POST"
+
+
+def test_a_method_that_is_not_allowed_names_all_that_are(trial: TestClient) -> None:
+    answer = trial.delete("/try/both")
+    problem(answer, 405)
+    assert answer.headers["allow"] == "GET, POST"
+    assert trial.put("/v1/jobs").headers["allow"] == "GET"
+    assert trial.get("/v1/jobs/x/cancellation").headers["allow"] == "POST"
 
 
 def test_a_fault_tells_nothing_of_the_inside(trial: TestClient) -> None:
-    answer = trial.get("/try/fault")
+    answer = trial.get("/fail/fault")
     problem(answer, 500)
     assert "secret" not in answer.text
 

@@ -80,6 +80,13 @@ def test_noise_information_is_the_mean_of_the_gradient_in_a_long_record(seed: in
         assert given == pytest.approx(expected, rel=0.05, abs=0.02 * given.max())
 
 
+def test_many_points_in_parts_are_the_same_as_each_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    points = np.linspace(0, 8, 7)[:, None]
+    whole = sensitivity_moments(paper_model(), points, 3, 1.0)
+    monkeypatch.setattr("oed.information.PRODUCTS_AT_ONCE", 2**12)
+    assert sensitivity_moments(paper_model(), points, 3, 1.0) == pytest.approx(whole, rel=1e-12)
+
+
 def test_an_autoregressive_noise_model_by_hand() -> None:
     """H = 1/(1 + d q): the information about d is 1/(1 − d²) per sample."""
     given = noise_information(paper_model(), [[2.0]])[0]

@@ -71,6 +71,10 @@ def test_lines_need_a_record_that_holds_them() -> None:
 def test_families_that_make_no_sense() -> None:
     with pytest.raises(RangeError, match="degree"):
         FirSpectra(-1)
+    with pytest.raises(RangeError, match="between 0 and 1000"):
+        FirSpectra(1001)
+    with pytest.raises(RangeError, match="fewer samples per period"):
+        LineSpectra(2**24).pricing(paper_model(), np.linspace(0, 8, 17)[:, None], None, 1.0)
     with pytest.raises(RangeError, match="no lines"):
         LineSpectra(1)
     with pytest.raises(RangeError, match="no line of the record"):

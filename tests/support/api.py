@@ -24,7 +24,8 @@ class Api:
     url: str
 
     def __post_init__(self) -> None:
-        self.http = httpx.Client(base_url=f"{self.url}/v1", timeout=60.0)
+        limits = httpx.Limits(keepalive_expiry=2.0)  # sooner than the server closes idle connections
+        self.http = httpx.Client(base_url=f"{self.url}/v1", timeout=60.0, limits=limits)
 
     def get(self, path: str, **query: Any) -> Json:
         return self._json(self.http.get(self._path(path), params=query))

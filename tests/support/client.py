@@ -1,6 +1,7 @@
 """The Python client of the service, generated from openapi/openapi.json the way a user would, and imported."""
 
 import importlib
+import io
 import subprocess
 import sys
 from pathlib import Path
@@ -42,3 +43,13 @@ def load(package: Path) -> ModuleType:
 def operation(package: ModuleType, tag: str, name: str) -> ModuleType:
     """The module of one operation, with `sync_detailed` and the other ways to call it; names in snake case."""
     return importlib.import_module(f"{package.__name__}.api.{tag}.{name}")
+
+
+def documents(package: ModuleType) -> ModuleType:
+    """The module of all request and answer documents."""
+    return importlib.import_module(f"{package.__name__}.models")
+
+
+def file(package: ModuleType, content: bytes, name: str) -> object:
+    """A file to be uploaded."""
+    return importlib.import_module(f"{package.__name__}.types").File(payload=io.BytesIO(content), file_name=name)

@@ -9,6 +9,7 @@ from pydantic.alias_generators import to_camel
 from app import __version__
 from app.arrays import finite_list_or_none, finite_or_none
 from app.conversion.designs import candidate_points, energy_caps, prior_information, searched_model
+from app.conversion.extremes import within_doubles
 from app.conversion.fields import field_named
 from app.conversion.models import kept_model, outcome_document, standard_deviations
 from app.conversion.spectra import curve, spectrum_document
@@ -46,7 +47,7 @@ def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
     request = DesignRequest.model_validate(payload["request"])
     document = Model.model_validate(payload["model"])
     model = kept_model(document, plant)
-    with field_named(FIELDS, "/operatingPoints"):
+    with field_named(FIELDS, "/operatingPoints"), within_doubles():
         problem = stated_problem(request, model, document.covariance is not None)
         found = design(problem, progress=_reporter(context, request.tolerance))
     return TaskResult(_document(payload, model, problem, found))
@@ -77,7 +78,8 @@ def _fitting_targets(request: DesignRequest, model: LpvModel) -> tuple[Target, .
     for i, given in enumerate(request.targets):
         target: Target = given.build()
         try:
-            target.matrices(model)
+            with within_doubles():
+                target.matrices(model)
         except MisuseError as error:
             raise MisuseError(str(error), f"/targets/{i}/{to_camel(error.field or '')}".rstrip("/")) from error
         targets.append(target)
@@ -106,9 +108,9 @@ def _document(payload: dict[str, Any], model: LpvModel, problem: DesignProblem, 
         "softwareVersion": __version__,
         "request": payload["request"],
         "modelId": payload["model"]["id"],
-        "outcome": _json(outcome_document(found.outcome)),
+        "outcome": outcome_document(found.outcome).as_json(),
         "sampleTimeSeconds": problem.step,
-        "experiments": [_json(experiment) for experiment in experiments],
+        "experiments": [experiment.as_json() for experiment in experiments],
         "totalEnergy": finite_or_none(found.total_energy),
         "lowerBound": finite_or_none(found.lower_bound),
         "gap": finite_or_none(found.gap),
@@ -117,7 +119,7 @@ def _document(payload: dict[str, Any], model: LpvModel, problem: DesignProblem, 
         "parameterNames": list(model.parameter_names),
         "expectedCovariance": finite_list_or_none(found.expected_covariance),
         "expectedStandardDeviations": standard_deviations(found.expected_covariance),
-        "binding": [_json(_binding(problem, binding)) for binding in found.binding],
+        "binding": [_binding(problem, binding).as_json() for binding in found.binding],
     }
 
 
@@ -129,8 +131,3 @@ def _binding(problem: DesignProblem, binding: Binding) -> BindingDocument:
         operating_point=None if is_target else problem.points[binding.index].tolist(),
         multiplier=finite_or_none(binding.multiplier),
     )
-
-
-def _json(document: Any) -> dict[str, Any]:
-    result: dict[str, Any] = document.model_dump(by_alias=True, mode="json")
-    return result

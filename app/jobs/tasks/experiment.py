@@ -3,6 +3,7 @@
 from typing import Any
 
 from app import __version__
+from app.conversion.extremes import within_doubles
 from app.conversion.inspection import understanding
 from app.files.measurement import Statements, measurement_arrays, read_measurement
 from app.jobs.task import TaskContext, TaskResult
@@ -23,7 +24,8 @@ def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
     else:
         data = _from_file(payload["source"], FileFields.model_validate(stated), arrays["file"].tobytes())
     context.progress(0.5, "looking at the data")
-    understood = understanding(data)
+    with within_doubles():
+        understood = understanding(data)
     kept = payload["arrays"] if payload["source"] == "json" else context.arrays.put(measurement_arrays(data))
     is_response = isinstance(data, FrequencyResponse)
     document = {
@@ -35,7 +37,7 @@ def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
         "varianceDegreesOfFreedom": data.variance_degrees_of_freedom if isinstance(data, FrequencyResponse) else None,
         "source": payload["source"],
         "fileName": payload["fileName"],
-        "understood": understood.model_dump(by_alias=True, mode="json"),
+        "understood": understood.as_json(),
     }
     return TaskResult(document, kept)
 

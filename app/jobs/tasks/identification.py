@@ -6,6 +6,7 @@ from typing import Any
 
 from app import __version__
 from app.conversion.experiments import kept_measurement
+from app.conversion.extremes import require_finite, within_doubles
 from app.conversion.fields import field_named
 from app.conversion.models import (
     accuracy_documents,
@@ -43,12 +44,13 @@ def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
         for experiment, given in zip(experiments, payload["experiments"], strict=True)
     ]
     data = [_fitted_data(request, structure, i, record, context) for i, record in enumerate(measured)]
-    local = _local_estimates(request, structure, data, context)
-    context.progress(0.8, "the parameter-varying model")
-    with field_named(FIELDS, "/experimentIds"):
-        estimate = request.lpv_estimator.build().estimate(
+    with field_named(FIELDS, "/experimentIds"), within_doubles():
+        local = _local_estimates(request, structure, data, context)
+        context.progress(0.8, "the parameter-varying model")
+        estimate: LpvEstimate = request.lpv_estimator.build().estimate(
             structure, dependence, data, local, prior=prior and kept_model(prior, plant)
         )
+        require_finite(estimate.model)
     return TaskResult(_document(plant, request, estimate, experiments, data, local))
 
 
@@ -60,7 +62,7 @@ def _fitted_data(
         return record
     context.progress(0.05, f"the frequency response of experiment {index + 1}")
     assert request.spectral_estimator is not None, "checked when the job was submitted"
-    with field_named({}, f"/experimentIds/{index}"):
+    with field_named({}, f"/experimentIds/{index}"), within_doubles():
         response: FrequencyResponse = request.spectral_estimator.build().estimate(record)
     return response if structure.is_discrete else dataclasses.replace(response, sample_time=None)
 
@@ -90,7 +92,7 @@ def _document(
 ) -> dict[str, Any]:
     model = estimate.model
     designs = {experiment.design_id for experiment in experiments}
-    asked = request.model_dump(by_alias=True, mode="json")
+    asked = request.as_json()
     structure, basis, own_bases = chosen(plant, request)
     over_range = range_documents(model)
     locals_ = zip(local, data, experiments, strict=True)
@@ -100,24 +102,19 @@ def _document(
         },
         "softwareVersion": __version__,
         "origin": "identified",
-        "structure": _json(structure),
-        "basis": _json(basis),
-        "coefficientBases": [_json(basis) for basis in own_bases],
+        "structure": structure.as_json(),
+        "basis": basis.as_json(),
+        "coefficientBases": [basis.as_json() for basis in own_bases],
         "coefficientNames": list(model.structure.coefficient_names),
         "parameterNames": list(model.parameter_names),
         **accuracy_documents(model),
-        "outcome": _json(outcome_document(estimate.outcome)),
-        "tests": [_json(test) for test in test_documents(estimate.tests)],
-        "localModels": [_json(local_document(one, fitted, e.id)) for one, fitted, e in locals_],
+        "outcome": outcome_document(estimate.outcome).as_json(),
+        "tests": [test.as_json() for test in test_documents(estimate.tests)],
+        "localModels": [local_document(one, fitted, e.id).as_json() for one, fitted, e in locals_],
         "stable": over_range["stable"],
-        "poles": [_json(poles) for poles in over_range["poles"]],
+        "poles": [poles.as_json() for poles in over_range["poles"]],
         "experimentIds": list(request.experiment_ids),
         "designId": designs.pop() if len(designs) == 1 else None,
         "parentId": request.prior_model_id,
         "seed": None,
     }
-
-
-def _json(document: Any) -> dict[str, Any]:
-    result: dict[str, Any] = document.model_dump(by_alias=True, mode="json")
-    return result

@@ -5,7 +5,9 @@ from typing import Any
 import numpy as np
 
 from app import __version__
+from app.conversion.extremes import within_doubles
 from app.conversion.fields import field_named
+from app.conversion.signals import lengths
 from app.conversion.spectra import spectrum_object
 from app.jobs.task import TaskContext, TaskResult
 from app.schemas.designs import Design, DesignedExperimentDocument
@@ -27,10 +29,10 @@ def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
     documents, arrays = [], {}
     for i, (experiment, generator) in enumerate(zip(design.experiments, generators, strict=True)):
         context.progress(i / len(design.experiments), f"signal {i + 1} of {len(design.experiments)}")
-        with field_named(FIELDS):
+        with field_named(FIELDS), within_doubles():
             signal = _realised(design, experiment, request, generator)
         arrays[f"period{i}"] = signal.signal
-        documents.append(_document(i, experiment, signal).model_dump(by_alias=True, mode="json"))
+        documents.append(_document(i, experiment, signal).as_json())
     document = {
         "softwareVersion": __version__,
         "modelId": design.model_id,
@@ -45,7 +47,7 @@ def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
 def _realised(
     design: Design, experiment: DesignedExperimentDocument, request: SignalsRequest, generator: np.random.Generator
 ) -> RealisedSignal:
-    period, periods = _lengths(design, experiment, request)
+    period, periods = lengths(design, experiment, request)
     signal = realise(
         spectrum_object(experiment.spectrum, design.sample_time_seconds),
         period,
@@ -57,19 +59,10 @@ def _realised(
     )
     if signal.samples > MOST_SAMPLES:
         raise RangeError(
-            f"the signal would need {signal.samples} samples, at most {MOST_SAMPLES} are made; raise the amplitude limit",
+            f"the signal would need {signal.samples} samples, at most {MOST_SAMPLES} are made; raise the limit",
             "amplitude_limit",
         )
     return signal
-
-
-def _lengths(design: Design, experiment: DesignedExperimentDocument, request: SignalsRequest) -> tuple[int, int]:
-    """Samples of a period, and periods: as asked for, else such that the duration is that of the design."""
-    if experiment.spectrum.kind == "lines":
-        period = request.samples or experiment.spectrum.period_samples
-        return period, request.periods or -(-design.samples // period)
-    periods = request.periods or 1
-    return request.samples or max(2, -(-design.samples // periods)), periods
 
 
 def _document(index: int, experiment: DesignedExperimentDocument, signal: RealisedSignal) -> SignalDocument:

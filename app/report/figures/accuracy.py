@@ -2,8 +2,6 @@
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from app.report.document import Plot, Table
 from app.report.numbers import percent, significant
 from app.report.style import NEUTRAL, PALETTE, new_figure
@@ -19,11 +17,6 @@ class Accuracy:
     expected: FloatArray
     reached: FloatArray
     error: FloatArray | None = None
-
-    @property
-    def largest_share(self) -> float:
-        """The largest reached standard deviation, in relation to what was asked."""
-        return float(np.max(self.reached / self.asked))
 
 
 def accuracy(figures: Accuracy) -> Plot:
