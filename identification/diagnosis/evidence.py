@@ -61,13 +61,22 @@ def _refitted(base: Fit, score: Score, hopeless: float) -> Evidence | None:
         return None
     best = min(fits, key=lambda one: one.cost)
     effect = best.model.effects[-1]
-    bound = effect.effect.largest
-    if bound is not None and np.max(abs(effect.coefficients)) > bound * 1.2:
+    if _outside(effect, best):
         return None
     parameters = len(effect.parameters())
     searched = 0.0 if effect.effect.fitted_names() else 2 * np.log(max(_tried(score), 1))
     penalty = parameters * np.log(base.rows.count) + searched
     return Evidence(score, best, base.cost - best.cost, parameters, float(best.cost + penalty))
+
+
+def _outside(one: PlacedEffect, found: Fit) -> bool:
+    """Whether the fit has left the physical range, or was held by its ends: then it is not this effect."""
+    bound = one.effect.largest
+    if bound is not None and np.max(abs(one.coefficients)) > 1.2 * bound:
+        return True
+    low, high = one.effect.limits(found.flows[0])
+    values = one.effect.values()
+    return bool(np.any(values <= low * (1 + 1e-6)) or np.any(values >= high * (1 - 1e-6)))
 
 
 def _tried(score: Score) -> int:

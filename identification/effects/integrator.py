@@ -16,6 +16,7 @@ class Integrator(Parallel):
     kind: ClassVar[str] = "integrator"
     title: ClassVar[str] = "integrator"
     unit: ClassVar[str] = "output unit per input unit and second"
+    sign: ClassVar[int] = 1
     source: ClassVar[str] = "[Ljung1999, Section 4.2]"
 
     def shape(self, omega: FloatArray) -> ComplexArray:

@@ -49,11 +49,15 @@ class Parallel(Effect):
 
     @abstractmethod
     def shape(self, omega: FloatArray) -> ComplexArray:
-        """s(ω) (K,)."""
+        """s(ω) (K,), or (shapes, K) for several amplitudes."""
+
+    def response(self, e: FloatArray, omega: FloatArray) -> ComplexArray:
+        """Σ e_i s_i(ω) (M, K) for e (shapes, M)."""
+        return np.asarray(e.T @ np.atleast_2d(self.shape(omega)))
 
     def tangent(self, e: FloatArray, flow: Flow) -> ComplexArray:
-        """∂Y/∂e (1, M, K)."""
-        return np.asarray((self.shape(flow.batch.omega) * flow.drive)[None])
+        """∂Y/∂e (shapes, M, K)."""
+        return np.asarray(np.atleast_2d(self.shape(flow.batch.omega))[:, None, :] * flow.drive)
 
 
 @dataclass(frozen=True)

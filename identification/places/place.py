@@ -123,8 +123,9 @@ def derivative(spectra: ComplexArray, batch: Batch) -> ComplexArray:
 class Effect(ABC):
     """A physical effect with amplitude e; with e = 0 it does nothing. The fields are its further parameters.
 
-    `domain`: the kind of plant it belongs to; `unit` of e in words, `sign` +1 where only e ≥ 0 is physical, `largest` the largest physical |e| (None: no bound),
-    `source` where it is described; `oversampling` of the time grid on which a force is computed in continuous time.
+    `domain`: the kind of plant it belongs to; `unit` of e in words, `sign` +1 where only e ≥ 0 is physical, `largest`
+    the largest physical |e| (None: no bound), `source` where it is described; `oversampling` of the time grid on which
+    a force is computed in continuous time; `shapes` the number of amplitudes.
     """
 
     kind: ClassVar[str]

@@ -41,7 +41,7 @@ def simulate(setting: Setting, acting: Sequence[Acting], batch: Batch, start: Co
         if isinstance(effect, Factor):
             factor = factor * effect.factor(e[0][:, None], batch.omega)
         elif isinstance(effect, Parallel):
-            linear = linear + e[0][:, None] * effect.shape(batch.omega) * drive
+            linear = linear + effect.response(e, batch.omega) * drive
     linear = linear + factor * core
     output = _measured(linear, acting, batch)
     return Flow(batch, setting, response, gradient, drive, core, linear, output, factor)
