@@ -35,7 +35,7 @@ def misfit(done, kind, strength):
     """Share of the root mean square of the output that θ cannot take up, with this effect hidden."""
     clean, with_effect = Bench().steady(done), Bench(((kind, strength),)).steady(done)
     batches = gather(noisy(clean, done, 1e-2, np.random.default_rng(0)))
-    rows = Rows(batches, (1.0,))
+    rows = Rows(batches)
     flow = MODEL.respond(batches[0])
     weights = batches[0].weights
     tangents = plant_tangents(MODEL, rows, [flow])

@@ -93,7 +93,7 @@ def compare(model: ExtendedModel, batches: Sequence[Batch], fitted: bool = True)
     the noise: r has the covariance I + J P Jᵀ. Raises MisuseError for a model without (finite) covariance then.
     """
     require_matching(model.base, batches)
-    rows = Rows(tuple(batches), tuple(1.0 for _ in batches))
+    rows = Rows(tuple(batches))
     flows, judge = _fitted(fit(model, rows)) if fitted else _held_out(model, rows)
     z = judge.residual
     if judge.covariance is not None:

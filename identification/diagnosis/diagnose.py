@@ -73,7 +73,7 @@ class Diagnosis:
 def rows_of(model: ExtendedModel, batches: Sequence[Batch]) -> Rows:
     """The batches as rows for a model; noise of unknown size is scaled by what the model leaves."""
     require_matching(model.base, batches)
-    rows = Rows(tuple(batches), tuple(1.0 for _ in batches))
+    rows = Rows(tuple(batches))
     if rows.scaled:
         return rows
     parts = rows.parts(fit(model, rows).residual)

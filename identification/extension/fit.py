@@ -13,6 +13,7 @@ from identification.places.place import Flow
 from identification.places.simulate import NoSteadyStateError
 
 HALVINGS = 6
+POLISHING, POLISHED = 4, 1e-3
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,9 +50,9 @@ def fit(
     """Minimise ‖(Y − Ŷ(θ_G, e, η))/σ‖² by Gauss–Newton steps, halved until they lead down.
 
     Tangents are exact for effects that act linearly; for effects on signals they leave out terms of the order of the
-    effect itself, so that the minimum is reached in a few steps more. With `exact` a last step is taken with
-    derivatives by differences of the simulation, which also give the covariance. Stops when a step promises less than
-    `tolerance` of ‖r‖², or after two steps when twice what it promises still leaves ‖r‖² above `hopeless`. Outcome
+    effect itself, so that the minimum is reached in a few steps more. With `exact` the last steps are taken
+    with derivatives by differences of the simulation, which also give the covariance. Stops when a step promises less
+    than `tolerance` of ‖r‖², or after two steps when twice what it promises still leaves ‖r‖² above `hopeless`. Outcome
     "not_converged" after `iterations`.
     """
     current = _at(model, rows, None)
@@ -131,10 +132,14 @@ def _moved(current: Fit, step: FloatArray) -> ExtendedModel:
 
 
 def _polished(current: Fit) -> Fit:
-    tangents = differences(current)
-    step, _ = _step(tangents, current.residual)
-    better = _descend(replace(current, tangents=tangents), step)
-    return replace(current if better is None else better, tangents=tangents)
+    for _ in range(POLISHING):
+        current = replace(current, tangents=differences(current))
+        step, promised = _step(current.tangents, current.residual)
+        better = _descend(current, step) if promised > POLISHED else None
+        if better is None:
+            return current
+        current = better
+    return replace(current, tangents=differences(current))
 
 
 def differences(current: Fit) -> FloatArray:

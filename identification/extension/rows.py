@@ -15,10 +15,14 @@ FURTHER_STEP = 1e-4
 
 @dataclass(frozen=True, eq=False)
 class Rows:
-    """Several batches as one vector of R whitened numbers; `scales`: by what the errors of each batch are larger."""
+    """Several batches as one vector of R whitened numbers; `scales`: by what the errors of each batch are
+    larger than stated, one unless given."""
 
     batches: tuple[Batch, ...]
-    scales: tuple[float, ...]
+    scales: tuple[float, ...] = ()
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "scales", self.scales or (1.0,) * len(self.batches))
 
     def residual(self, flows: Sequence[Flow]) -> FloatArray:
         """(Y − Ŷ)/σ as rows, (R,)."""
