@@ -1,6 +1,6 @@
 """Experiments: documents and kept arrays to measurements."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from app.schemas.experiments import Experiment, TimeRecordRequest
 from app.schemas.experiments import FrequencyResponseRequest as ResponseRequest
+from app.store.arrays import ArrayStore
 from identification.signals import FrequencyResponse, Measurement, TimeRecord
 
 
@@ -47,3 +48,8 @@ def kept_measurement(experiment: Experiment, arrays: Mapping[str, NDArray[Any]])
         arrays.get("variance"),
         experiment.variance_degrees_of_freedom,
     )
+
+
+def kept_measurements(given: Sequence[Mapping[str, Any]], arrays: ArrayStore) -> list[Measurement]:
+    """The measurements of the experiments in a payload, {"document": …, "arrays": hash} each."""
+    return [kept_measurement(Experiment.model_validate(one["document"]), arrays.get(one["arrays"])) for one in given]

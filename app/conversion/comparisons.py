@@ -1,0 +1,83 @@
+"""Comparisons: what was found of one part of the data, to documents and arrays."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.arrays import ComplexVector, finite_or_none
+from app.conversion.models import test_documents
+from app.schemas.comparisons import (
+    ComparedExperiment,
+    ComparisonPart,
+    Data,
+    LineClass,
+    PointTest,
+    ResidualRow,
+)
+from app.schemas.experiments import Experiment
+from app.schemas.models import TestDocument
+from identification.comparison.compare import Comparison
+from identification.outcome import TestResult
+
+LINE_CLASSES: tuple[LineClass, ...] = ("excited", "unexcitedOdd", "unexcitedEven")
+Arrays = Mapping[str, NDArray[Any]]
+
+
+def part_document(data: Data, found: Comparison) -> ComparisonPart:
+    """The tests of one part of the data."""
+    points = np.unique(np.concatenate([one.points for one in found.maps]), axis=0)
+    by_point = zip(points, test_documents(found.by_point), strict=True) if found.by_point else ()
+    return ComparisonPart(
+        data=data,
+        noise_known=found.overall is not None,
+        lack_of_fit=_test(found.overall),
+        by_point=[PointTest(operating_point=point.tolist(), test=test) for point, test in by_point],
+        by_band=test_documents(found.by_band),
+        by_line_class=test_documents(found.by_class),
+        dependence=_test(found.dependence),
+        dynamics=_test(found.dynamics),
+        between_harmonics=test_documents(found.between),
+    )
+
+
+def compared_experiments(data: Data, found: Comparison, experiments: Sequence[Experiment]) -> list[ComparedExperiment]:
+    """Fit in per cent of the experiments of one part, in the order given."""
+    return [
+        ComparedExperiment(
+            experiment_id=experiment.id,
+            operating_point=experiment.operating_point,
+            data=data,
+            fit_percent=finite_or_none(float(percent)),
+        )
+        for experiment, percent in zip(experiments, found.fit_percent, strict=True)
+    ]
+
+
+def map_arrays(found: Comparison, places: Sequence[int]) -> dict[str, NDArray[Any]]:
+    """Frequencies, residuals and line classes of each experiment by its place in the request; compared lines only."""
+    arrays: dict[str, NDArray[Any]] = {}
+    for one in found.maps:
+        for m, member in enumerate(one.members):
+            used, place = one.compared[m], places[int(member)]
+            arrays[f"frequenciesRadPerSecond{place}"] = one.frequencies[used]
+            arrays[f"residual{place}"] = one.residual[m, used]
+            arrays[f"lineClass{place}"] = one.classes[m, used]
+    return arrays
+
+
+def residual_row(place: int, experiment: ComparedExperiment, arrays: Arrays) -> ResidualRow:
+    """The row of a map, from kept arrays."""
+    return ResidualRow(
+        experiment_id=experiment.experiment_id,
+        operating_point=experiment.operating_point,
+        data=experiment.data,
+        frequencies_rad_per_second=arrays[f"frequenciesRadPerSecond{place}"].tolist(),
+        residual=ComplexVector.of(arrays[f"residual{place}"]),
+        line_classes=[LINE_CLASSES[number] for number in arrays[f"lineClass{place}"]],
+    )
+
+
+def _test(result: TestResult | None) -> TestDocument | None:
+    return None if result is None else test_documents((result,))[0]

@@ -1,0 +1,145 @@
+"""Compare, diagnose and extend through HTTP: a plant with a hidden effect, integrated by a loop of the tests' own."""
+
+import io
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from tests.support.api import Api, Json
+from tests.support.hidden_plant import PLANT, HiddenPlant
+from tests.support.server import Server
+
+CUBIC = 6.0
+FITTED = [-1.0, -0.6, -0.2, 0.2, 0.6, 1.0]
+HELD_OUT = [-0.8, 0.4]
+LEVELS = (20.0, 10.0)
+IDENTIFICATION = {
+    "localEstimator": {"kind": "rational_fit"},
+    "lpvEstimator": {"kind": "generalised_least_squares"},
+    "spectralEstimator": {"kind": "periodic_average"},
+}
+
+
+@pytest.fixture(scope="module")
+def api(server: Server) -> Api:
+    return Api(server.url)
+
+
+@pytest.fixture(scope="module")
+def plant(api: Api) -> Json:
+    return api.post("/plants", PLANT)
+
+
+def brought_in(api: Api, plant: Json, points: list[float], seed: int) -> list[str]:
+    hidden = HiddenPlant(CUBIC)
+    bodies = [body for i, level in enumerate(LEVELS) for body in hidden.records(points, level, seed + i)]
+    return [api.made("/experiments", {"plantId": plant["id"], **body})["id"] for body in bodies]
+
+
+@pytest.fixture(scope="module")
+def fitted(api: Api, plant: Json) -> list[str]:
+    return brought_in(api, plant, FITTED, 1)
+
+
+@pytest.fixture(scope="module")
+def held_out(api: Api, plant: Json) -> list[str]:
+    return brought_in(api, plant, HELD_OUT, 11)
+
+
+@pytest.fixture(scope="module")
+def model(api: Api, plant: Json, fitted: list[str]) -> Json:
+    return api.made("/models", {"plantId": plant["id"], "experimentIds": fitted, **IDENTIFICATION})
+
+
+@pytest.fixture(scope="module")
+def comparison(api: Api, model: Json, fitted: list[str], held_out: list[str]) -> Json:
+    return api.made("/comparisons", {"modelId": model["id"], "experimentIds": fitted + held_out})
+
+
+def test_the_comparison_shows_the_failure(comparison: Json, fitted: list[str], held_out: list[str]) -> None:
+    assert [part["data"] for part in comparison["parts"]] == ["fitted", "heldOut"]
+    for part in comparison["parts"]:
+        assert part["noiseKnown"]
+        assert part["lackOfFit"]["pValue"] < 1e-9
+        assert part["lackOfFit"]["statistic"] > 1.5 * part["lackOfFit"]["degreesOfFreedom"]
+        assert all(test["pValue"] is not None for test in part["byBand"] + part["byLineClass"])
+    points = [point["operatingPoint"] for point in comparison["parts"][0]["byPoint"]]
+    assert points == [[p] for p in FITTED]
+    assert [one["experimentId"] for one in comparison["experiments"]] == fitted + held_out
+    assert [one["data"] for one in comparison["experiments"]] == ["fitted"] * len(fitted) + ["heldOut"] * len(held_out)
+    percent = [one["fitPercent"] for one in comparison["experiments"]]
+    assert 70 < min(percent) < max(percent) < 100, percent
+    assert np.median(percent) < 98.5, percent
+
+
+def test_the_line_classes_show_an_odd_nonlinearity(comparison: Json) -> None:
+    ratios = {
+        test["name"]: test["statistic"] / test["degreesOfFreedom"] for test in comparison["parts"][0]["byLineClass"]
+    }
+    assert ratios["unexcited odd"] > 1.5 or ratios["excited"] > 2
+
+
+def test_the_maps_are_those_of_the_tests(api: Api, comparison: Json) -> None:
+    rows = api.get(f"/comparisons/{comparison['id']}/maps")["rows"]
+    assert [row["experimentId"] for row in rows] == [one["experimentId"] for one in comparison["experiments"]]
+    energy = {"fitted": 0.0, "heldOut": 0.0}
+    for row in rows:
+        assert len(row["frequenciesRadPerSecond"]) == len(row["residual"]["re"]) == len(row["lineClasses"])
+        assert all(low < high for low, high in pairwise(row["frequenciesRadPerSecond"]))
+        z = np.array(row["residual"]["re"]) + 1j * np.array(row["residual"]["im"])
+        weight = np.full(len(z), 2.0)
+        weight[[0, -1]] = 1.0
+        energy[row["data"]] += float(weight @ abs(z) ** 2)
+    assert energy["fitted"] == pytest.approx(comparison["parts"][0]["lackOfFit"]["statistic"], rel=1e-6)
+    arrays = np.load(io.BytesIO(api.download(f"/comparisons/{comparison['id']}/file", format="npz")))
+    for i, row in enumerate(rows):
+        np.testing.assert_allclose(arrays[f"residual{i}"].real, row["residual"]["re"])
+        assert arrays["operatingPoints"][i].tolist() == row["operatingPoint"]
+    assert api.get("/comparisons", plantId=comparison["plantId"])["items"][0]["id"] == comparison["id"]
+
+
+@pytest.fixture(scope="module")
+def diagnosis(api: Api, comparison: Json) -> Json:
+    return api.made("/diagnoses", {"comparisonId": comparison["id"], "name": "what is missing"})
+
+
+def test_the_diagnosis_ranks_the_right_effect_first(diagnosis: Json, fitted: list[str]) -> None:
+    assert diagnosis["experimentIds"] == fitted
+    assert diagnosis["verdict"] == "explained"
+    first = diagnosis["ranking"][0]
+    assert first["kind"] == "cubic_stiffness" == diagnosis["announced"][0]
+    assert first["announced"]
+    assert first["adjustedPValue"] < 1e-3
+    assert first["evidence"]["weight"] > 0.95
+    assert first["evidence"]["chiSquareExplained"] > 100
+    assert diagnosis["lackOfFit"]["pValue"] < 1e-9 < 1e-3 < diagnosis["remaining"]["pValue"]
+
+
+def test_the_amplitude_has_its_unit_and_lies_within_its_uncertainty(diagnosis: Json) -> None:
+    effect = diagnosis["ranking"][0]["evidence"]["effect"]
+    amplitude, deviation = effect["coefficients"][0][0], effect["standardDeviations"][0][0]
+    assert effect["unit"]
+    assert 0 < deviation < 0.05 * CUBIC
+    assert abs(amplitude - CUBIC) < 4 * deviation
+
+
+def test_confusability_and_visibility(diagnosis: Json) -> None:
+    matrix = np.array(diagnosis["confusability"])
+    assert matrix.shape == (len(diagnosis["ranking"]),) * 2
+    np.testing.assert_allclose(matrix, matrix.T)
+    np.testing.assert_allclose(np.diagonal(matrix), 1.0)
+    assert 0 <= matrix.min() <= matrix.max() <= 1
+    status = {one["kind"]: one for one in diagnosis["visibility"]}
+    assert status["second_variable"]["status"] == "notJudged"
+    assert status["second_variable"]["reason"]
+    assert status["cubic_stiffness"]["status"] == "visible"
+    assert 0 < status["cubic_stiffness"]["detectableAmplitude"] < CUBIC
+    assert {one["kind"] for one in diagnosis["ranking"]} == {k for k, v in status.items() if v["status"] == "visible"}
+
+
+def test_the_picture_of_what_is_missing_stands_out_of_its_noise(diagnosis: Json, fitted: list[str]) -> None:
+    assert [row["experimentId"] for row in diagnosis["missing"]] == fitted
+    row = diagnosis["missing"][0]
+    size = np.hypot(row["response"]["re"], row["response"]["im"])
+    assert np.max(size / np.array(row["standardDeviation"])) > 5
