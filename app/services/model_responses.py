@@ -9,7 +9,7 @@ from app.conversion.misuse import pointing
 from app.conversion.models import kept_model
 from app.errors import UnprocessableError
 from app.schemas.models import ModelFrequencyResponse
-from app.services.models import get
+from app.services.models import get, require_without_effects
 from app.services.plants import get as get_plant
 from app.store.resources import ResourceRepository
 from identification.arrays import FloatArray
@@ -24,6 +24,7 @@ def frequency_response(
 ) -> ModelFrequencyResponse:
     """The response of a model at one operating point over a band, with 95 % bands."""
     document = get(resources, model_id)
+    require_without_effects(document, "/modelId", "path")
     model = kept_model(document, get_plant(resources, document.plant_id))
     if minimum > maximum:
         raise UnprocessableError.at("/maximumRadPerSecond", "the band must rise", "query")

@@ -143,3 +143,53 @@ def test_the_picture_of_what_is_missing_stands_out_of_its_noise(diagnosis: Json,
     row = diagnosis["missing"][0]
     size = np.hypot(row["response"]["re"], row["response"]["im"])
     assert np.max(size / np.array(row["standardDeviation"])) > 5
+
+
+@pytest.fixture(scope="module")
+def extended(api: Api, model: Json, diagnosis: Json, fitted: list[str], held_out: list[str]) -> Json:
+    body = {
+        "effect": diagnosis["announced"][0],
+        "experimentIds": fitted,
+        "heldOutExperimentIds": held_out,
+        "diagnosisId": diagnosis["id"],
+    }
+    return api.made(f"/models/{model['id']}/extensions", body)
+
+
+def test_the_held_out_error_falls(extended: Json) -> None:
+    before, after = extended["extension"]["before"], extended["extension"]["after"]
+    assert after["heldOut"] < 0.3 * before["heldOut"]
+    assert after["fitted"] < 0.3 * before["fitted"]
+    noise = 0.01 / np.sqrt(4) * np.sqrt(2 * 75 / 512)  # four periods, 75 of 256 lines
+    assert after["heldOut"] == pytest.approx(noise, rel=0.15)
+    assert before["lackOfFit"]["pValue"] < 1e-9 < 1e-3 < after["lackOfFit"]["pValue"]
+
+
+def test_the_new_version_stands_beside_the_old(api: Api, model: Json, extended: Json, diagnosis: Json) -> None:
+    assert extended["parentId"] == model["id"]
+    assert extended["origin"] == "extended"
+    assert extended["extension"]["diagnosisId"] == diagnosis["id"]
+    assert api.get(f"/models/{model['id']}") == model
+    assert model["effects"] == []
+
+
+def test_parameters_of_plant_and_effect_come_with_their_joint_covariance(extended: Json) -> None:
+    covariance = np.array(extended["jointCovariance"])
+    names = extended["jointParameterNames"]
+    assert names == [*extended["parameterNames"], "cubic_stiffness.e[0]"]
+    values = np.array([*extended["theta"], extended["effects"][0]["coefficients"][0][0]])
+    error = values - np.array([1.8, 64.0, 28.0, 1.0, CUBIC])
+    assert float(error @ np.linalg.solve(covariance, error)) < 20.5  # 99.9 % of χ²(5)
+    np.testing.assert_allclose(extended["covariance"], covariance[:-1, :-1])
+
+
+def test_an_extended_model_is_compared_and_diagnosed_like_one_without(
+    api: Api, extended: Json, fitted: list[str], held_out: list[str]
+) -> None:
+    compared = api.made("/comparisons", {"modelId": extended["id"], "experimentIds": fitted + held_out})
+    assert all(part["lackOfFit"]["pValue"] > 1e-3 for part in compared["parts"])
+    assert all(one["fitPercent"] > 99 for one in compared["experiments"])
+    again = api.made("/diagnoses", {"comparisonId": compared["id"], "effects": ["cubic_stiffness", "delay", "lag"]})
+    assert again["verdict"] == "nothingMissing"
+    assert again["announced"] == []
+    assert {one["kind"] for one in again["visibility"]} == {"cubic_stiffness", "delay", "lag"}
