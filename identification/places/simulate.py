@@ -14,6 +14,7 @@ from identification.places.place import Effect, Flow, Setting, derivative
 
 Acting = tuple[Effect, FloatArray]
 MEMORY = 4
+DIVERGED = 1e3
 
 
 class NoSteadyStateError(MisuseError):
@@ -127,14 +128,14 @@ def fixed_point(
 
     Raises NoSteadyStateError when a row has not settled to `tolerance` of its size after `limit` steps.
     """
-    x = start
+    x, scale = start, float(np.linalg.norm(start)) + 1.0
     steps: list[ComplexArray] = []
     values: list[ComplexArray] = []
     for _ in range(limit):
         with np.errstate(over="ignore", invalid="ignore"):
             value = update(x)
         difference = value - x
-        if not np.all(np.isfinite(difference)):
+        if not np.all(np.isfinite(difference)) or np.linalg.norm(difference) > DIVERGED * scale:
             break
         size = np.linalg.norm(value, axis=1)
         if np.all(np.linalg.norm(difference, axis=1) <= tolerance * size + np.finfo(float).tiny):

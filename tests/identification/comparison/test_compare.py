@@ -43,6 +43,19 @@ def test_nothing_fails_when_nothing_is_missing():
     assert found.fit_percent.min() > 98
 
 
+def test_degrees_of_freedom_count_what_was_fitted_once():
+    """Four parameters of θ; three coefficients at each of five operating points."""
+    data = batches(1)
+    found = compare(MODEL, data)
+    rows = sum(batch.row_count for batch in data)
+    assert found.overall.degrees_of_freedom == pytest.approx(rows - 4)
+    for parts in (found.by_point, found.by_band, found.by_class):
+        assert sum(part.degrees_of_freedom for part in parts) == pytest.approx(rows - 4)
+    assert found.dependence.degrees_of_freedom == 3 * 5 - 4
+    assert found.dynamics.degrees_of_freedom == rows - 3 * 5
+    assert compare(MODEL, data, fitted=False).overall.degrees_of_freedom == rows
+
+
 def test_the_map_has_unit_variance():
     values = [abs(m.residual[m.compared]) ** 2 for s in range(10) for m in compare(MODEL, batches(s)).maps]
     assert np.mean(np.concatenate(values)) == pytest.approx(1.0, abs=0.05)
