@@ -186,7 +186,8 @@ def _work(seed_and_task):
 def tasks(study: str, runs: int) -> list[Any]:
     """What the runs of a study are."""
     if study == "hits":
-        return [(kind, share, 1000 * r + 7) for kind in kinds() for share in SHARES for r in range(runs)]
+        every = [(kind, share) for kind in kinds() for share in SHARES]
+        return [(kind, share, 100_000 * n + r) for n, (kind, share) in enumerate(every) for r in range(runs)]
     if study == "alarms":
         return [(number, 100_000 * number + r) for number in range(len(CONDITIONS)) for r in range(runs)]
     if study == "unknown":

@@ -52,7 +52,8 @@ def score_tests(fit: Fit, seen: Sequence[Candidate], generator: np.random.Genera
     ranks = (np.argsort(np.argsort(least_null, axis=0), axis=0) + 1) / (len(least_null) + 1)
     smallest = np.sort(ranks.min(axis=1))
     family = [_tail(p, smallest, len(seen)) for p in own]
-    best = [int(np.argmin(alone[group])) for group in groups]
+    sizes = np.array(statistics)
+    best = [int(np.lexsort((-sizes[group], alone[group]))[0]) for group in groups]
     flat = [statistics[group.start + b] for group, b in zip(groups, best, strict=True)]
     return tuple(Score(*one) for one in zip(seen, best, flat, map(float, own), family, strict=True))
 

@@ -8,6 +8,7 @@ from scipy.stats import kstest
 
 from identification.diagnosis.scores import score_tests
 from identification.diagnosis.signatures import candidates, noise_freedom, tangent_space
+from identification.effects.antiresonance import Antiresonance
 from identification.effects.cubic_stiffness import CubicStiffness
 from identification.effects.delay import Delay
 from identification.effects.lag import Lag
@@ -96,3 +97,12 @@ def test_the_whole_library_can_be_scored():
     scores = scored(base(), library())
     assert len(scores) > 30
     assert all(0 <= s.adjusted_p <= 1 and np.isfinite(s.statistic) for s in scores.values())
+
+
+def test_the_best_variant_is_the_best_when_p_is_too_small_to_tell():
+    """All p of a strong effect are zero; the variant is then the one that explains most."""
+    found = base(sigma=1e-5, extra=lambda w: 1 - 0.3 * 0.6j * w * 5 / (25 - w**2 + 0.6j * w * 5))
+    score = scored(found, (Antiresonance(),))["antiresonance"]
+    sizes = [float(np.sum((one.basis @ found.residual) ** 2)) for one in score.candidate.signatures]
+    assert score.p_value == 0
+    assert sizes[score.best] == max(s for s, one in zip(sizes, score.candidate.signatures, strict=True) if s > 0)
