@@ -1,31 +1,28 @@
 """Comparisons: what was found of one part of the data, to documents and arrays."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from app.arrays import ComplexVector, finite_or_none
+from app.arrays import finite_or_none
 from app.conversion.models import test_documents
 from app.schemas.comparisons import (
+    BandTest,
     ComparedExperiment,
     ComparisonPart,
     Data,
-    LineClass,
     PointTest,
-    ResidualRow,
 )
 from app.schemas.experiments import Experiment
 from app.schemas.models import TestDocument
-from identification.comparison.compare import Comparison
+from identification.comparison.batch import Batch
+from identification.comparison.compare import Comparison, bands
 from identification.outcome import TestResult
 
-LINE_CLASSES: tuple[LineClass, ...] = ("excited", "unexcitedOdd", "unexcitedEven")
-Arrays = Mapping[str, NDArray[Any]]
 
-
-def part_document(data: Data, found: Comparison) -> ComparisonPart:
+def part_document(data: Data, found: Comparison, batches: Sequence[Batch]) -> ComparisonPart:
     """The tests of one part of the data."""
     points = np.unique(np.concatenate([one.points for one in found.maps]), axis=0)
     by_point = zip(points, test_documents(found.by_point), strict=True) if found.by_point else ()
@@ -34,7 +31,7 @@ def part_document(data: Data, found: Comparison) -> ComparisonPart:
         noise_known=found.overall is not None,
         lack_of_fit=_test(found.overall),
         by_point=[PointTest(operating_point=point.tolist(), test=test) for point, test in by_point],
-        by_band=test_documents(found.by_band),
+        by_band=_bands(found, batches),
         by_line_class=test_documents(found.by_class),
         dependence=_test(found.dependence),
         dynamics=_test(found.dynamics),
@@ -67,16 +64,14 @@ def map_arrays(found: Comparison, places: Sequence[int]) -> dict[str, NDArray[An
     return arrays
 
 
-def residual_row(place: int, experiment: ComparedExperiment, arrays: Arrays) -> ResidualRow:
-    """The row of a map, from kept arrays."""
-    return ResidualRow(
-        experiment_id=experiment.experiment_id,
-        operating_point=experiment.operating_point,
-        data=experiment.data,
-        frequencies_rad_per_second=arrays[f"frequenciesRadPerSecond{place}"].tolist(),
-        residual=ComplexVector.of(arrays[f"residual{place}"]),
-        line_classes=[LINE_CLASSES[number] for number in arrays[f"lineClass{place}"]],
-    )
+def _bands(found: Comparison, batches: Sequence[Batch]) -> list[BandTest]:
+    if not found.by_band:
+        return []
+    pairs = zip(bands(batches), test_documents(found.by_band), strict=True)
+    return [
+        BandTest(minimum_rad_per_second=max(low, 0.0), maximum_rad_per_second=finite_or_none(high), test=test)
+        for (low, high), test in pairs
+    ]
 
 
 def _test(result: TestResult | None) -> TestDocument | None:

@@ -41,6 +41,14 @@ class PointTest(CamelModel):
     test: TestDocument
 
 
+class BandTest(CamelModel):
+    """Lack of fit in one band of frequencies."""
+
+    minimum_rad_per_second: Double
+    maximum_rad_per_second: Double | None = Field(description="null: all above")
+    test: TestDocument
+
+
 class ComparisonPart(CamelModel):
     """Tests of the experiments that were fitted, or of those that were held out.
 
@@ -53,7 +61,7 @@ class ComparisonPart(CamelModel):
     noise_known: bool = Field(description="whether the size of the noise is known from variances or periods")
     lack_of_fit: TestDocument | None = Field(description="the whitened residuals against the noise")
     by_point: list[PointTest]
-    by_band: list[TestDocument] = Field(description="the name says the band in rad/s")
+    by_band: list[BandTest] = Field(description="below, in six bands over, and above the excited frequencies")
     by_line_class: list[TestDocument] = Field(
         description="excited lines show linear misfit, unexcited odd and even ones odd and even nonlinearity"
     )

@@ -2,12 +2,23 @@
 
 from typing import Any
 
+from numpy.typing import NDArray
+
+from app.arrays import ComplexVector
 from app.container import Container
-from app.conversion.comparisons import residual_row
 from app.errors import UnprocessableError
 from app.files.stored import Format, arrays_file
 from app.jobs.records import JobRecord
-from app.schemas.comparisons import Comparison, ComparisonList, ComparisonMaps, ComparisonRequest, Data
+from app.schemas.comparisons import (
+    ComparedExperiment,
+    Comparison,
+    ComparisonList,
+    ComparisonMaps,
+    ComparisonRequest,
+    Data,
+    LineClass,
+    ResidualRow,
+)
 from app.schemas.models import Model
 from app.schemas.plants import Plant
 from app.services.documents import fields, items, named
@@ -18,6 +29,7 @@ from app.services.plants import plant_of
 from app.store.resources import Resource, ResourceRepository
 
 KIND = "comparisons"
+LINE_CLASSES: tuple[LineClass, ...] = ("excited", "unexcitedOdd", "unexcitedEven")
 
 
 def submit(container: Container, request: ComparisonRequest, key: str | None) -> JobRecord:
@@ -73,7 +85,7 @@ def maps(container: Container, comparison_id: str) -> ComparisonMaps:
     resource = container.resources.get(KIND, comparison_id)
     arrays = container.arrays.get(resource.arrays or "")
     experiments = enumerate(comparison_of(resource).experiments)
-    rows = [residual_row(place, experiment, arrays) for place, experiment in experiments]
+    rows = [_row(place, experiment, arrays) for place, experiment in experiments]
     return ComparisonMaps(comparison_id=comparison_id, rows=rows)
 
 
@@ -81,3 +93,14 @@ def as_file(container: Container, comparison_id: str, file_format: Format) -> by
     """The same as a file: arrays numbered by the place of the experiment, line classes 0, 1, 2."""
     resource = container.resources.get(KIND, comparison_id)
     return arrays_file(container.arrays.get(resource.arrays or ""), file_format)
+
+
+def _row(place: int, experiment: ComparedExperiment, arrays: dict[str, NDArray[Any]]) -> ResidualRow:
+    return ResidualRow(
+        experiment_id=experiment.experiment_id,
+        operating_point=experiment.operating_point,
+        data=experiment.data,
+        frequencies_rad_per_second=arrays[f"frequenciesRadPerSecond{place}"].tolist(),
+        residual=ComplexVector.of(arrays[f"residual{place}"]),
+        line_classes=[LINE_CLASSES[number] for number in arrays[f"lineClass{place}"]],
+    )

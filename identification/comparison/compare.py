@@ -182,16 +182,23 @@ def _points(rows: Rows) -> list[tuple[str, BoolArray]]:
     return found
 
 
-def _bands(rows: Rows) -> list[tuple[str, BoolArray]]:
-    """Bands of equal ratio over the excited frequencies, and what lies below and above them."""
-    bands = np.array([batch.band for batch in rows.batches])
-    inner = np.geomspace(bands[:, 0].min() * (1 - 1e-9), bands[:, 1].max() * (1 + 1e-9), BANDS + 1)
+def bands(batches: Sequence[Batch]) -> list[tuple[float, float]]:
+    """Ends, rad/s, of bands of equal ratio over the excited frequencies, and of what lies below (−1) and above (∞)."""
+    ends = np.array([batch.band for batch in batches])
+    inner = np.geomspace(ends[:, 0].min() * (1 - 1e-9), ends[:, 1].max() * (1 + 1e-9), BANDS + 1)
     edges = np.concatenate([[-1.0], inner, [np.inf]])
+    return [(float(low), float(high)) for low, high in pairwise(edges) if any(_holds(b, low, high) for b in batches)]
+
+
+def _holds(batch: Batch, low: float, high: float) -> bool:
+    return bool(np.any(np.isfinite(batch.variances[:, (batch.omega > low) & (batch.omega <= high)])))
+
+
+def _bands(rows: Rows) -> list[tuple[str, BoolArray]]:
     found = []
-    for low, high in pairwise(edges):
+    for low, high in bands(rows.batches):
         chosen = [np.repeat(((b.omega > low) & (b.omega <= high))[None], len(b.points), axis=0) for b in rows.batches]
-        if any(np.any(one & np.isfinite(b.variances)) for one, b in zip(chosen, rows.batches, strict=True)):
-            found.append((f"{max(low, 0.0):.4g} … {high:.4g} rad/s", _spread(rows, chosen)))
+        found.append((f"{max(low, 0.0):.4g} … {high:.4g} rad/s", _spread(rows, chosen)))
     return found
 
 

@@ -6,7 +6,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from tests.support.api import Api, Json
+from tests.support.api import Api, JobFailedError, Json, pointers
 from tests.support.hidden_plant import PLANT, HiddenPlant
 from tests.support.server import Server
 
@@ -63,7 +63,11 @@ def test_the_comparison_shows_the_failure(comparison: Json, fitted: list[str], h
         assert part["noiseKnown"]
         assert part["lackOfFit"]["pValue"] < 1e-9
         assert part["lackOfFit"]["statistic"] > 1.5 * part["lackOfFit"]["degreesOfFreedom"]
-        assert all(test["pValue"] is not None for test in part["byBand"] + part["byLineClass"])
+        assert all(test["pValue"] is not None for test in part["byLineClass"])
+        bands = part["byBand"]
+        assert len(bands) >= 7
+        assert all(a["maximumRadPerSecond"] == b["minimumRadPerSecond"] for a, b in pairwise(bands))
+        assert max(bands, key=lambda one: one["test"]["statistic"])["minimumRadPerSecond"] < 12.0
     points = [point["operatingPoint"] for point in comparison["parts"][0]["byPoint"]]
     assert points == [[p] for p in FITTED]
     assert [one["experimentId"] for one in comparison["experiments"]] == fitted + held_out
@@ -193,3 +197,72 @@ def test_an_extended_model_is_compared_and_diagnosed_like_one_without(
     assert again["verdict"] == "nothingMissing"
     assert again["announced"] == []
     assert {one["kind"] for one in again["visibility"]} == {"cubic_stiffness", "delay", "lag"}
+
+
+def responses(points: list[float], delay: float, freedom: float | None = None) -> list[Json]:
+    """Bodies of frequency responses of the plant without stiffening, but with a delay, known to one per cent."""
+    omega, generator, bodies = np.linspace(0.5, 25.0, 80), np.random.default_rng(3), []
+    for p in points:
+        exact = np.exp(-1j * omega * delay) / (64.0 + 28.0 * p - omega**2 + 1.8j * omega)
+        noise = generator.standard_normal(80) + 1j * generator.standard_normal(80)
+        measured = exact + 0.01 * abs(exact) * np.sqrt(0.5) * noise
+        bodies.append(
+            {
+                "kind": "frequencyResponse",
+                "operatingPoint": [p],
+                "frequenciesRadPerSecond": omega.tolist(),
+                "response": {"re": measured.real.tolist(), "im": measured.imag.tolist()},
+                "variance": ((0.01 * abs(exact)) ** 2).tolist(),
+                "varianceDegreesOfFreedom": freedom,
+            }
+        )
+    return bodies
+
+
+@pytest.fixture(scope="module")
+def stated(api: Api, plant: Json) -> Json:
+    return api.post("/models/stated", {"plantId": plant["id"], "theta": [1.8, 64.0, 28.0, 1.0], "noiseVariance": 1.0})
+
+
+def test_frequency_responses_alone(api: Api, plant: Json, stated: Json) -> None:
+    bodies = responses([-1.0, 0.0, 1.0], delay=0.01)
+    measured = [api.made("/experiments", {"plantId": plant["id"], **body})["id"] for body in bodies]
+    found = api.made("/diagnoses", {"modelId": stated["id"], "experimentIds": measured, "domain": "mechanical"})
+    status = {one["kind"]: one["status"] for one in found["visibility"]}
+    assert status["cubic_stiffness"] == status["saturation"] == status["hum"] == "notJudged"
+    assert status["delay"] == "visible"
+    assert "inductance" not in status
+    assert "delay" in found["announced"]
+    body = {"effect": "delay", "experimentIds": measured[::2], "heldOutExperimentIds": measured[1:2]}
+    grown = api.made(f"/models/{stated['id']}/extensions", body)
+    amplitude, deviation = (grown["effects"][0][name][0][0] for name in ("coefficients", "standardDeviations"))
+    assert abs(amplitude - 0.01) < 4 * deviation < 0.002
+    assert grown["extension"]["after"]["heldOut"] < 0.5 * grown["extension"]["before"]["heldOut"]
+
+
+def test_variances_of_too_few_degrees_of_freedom_are_a_problem_of_the_job(api: Api, plant: Json, stated: Json) -> None:
+    body = {"plantId": plant["id"], **responses([0.0], delay=0.0, freedom=2.0)[0]}
+    experiment = api.made("/experiments", body)["id"]
+    with pytest.raises(JobFailedError) as failed:
+        api.made("/diagnoses", {"modelId": stated["id"], "experimentIds": [experiment]})
+    assert failed.value.problem["status"] == 422
+    assert pointers(failed.value.problem) == ["/experimentIds"]
+
+
+def test_an_effect_that_the_experiments_leave_no_room_for_is_a_problem_of_the_job(
+    api: Api, stated: Json, fitted: list[str]
+) -> None:
+    body = {"effect": "quadratic_dependence", "experimentIds": fitted[2:4]}
+    with pytest.raises(JobFailedError) as failed:
+        api.made(f"/models/{stated['id']}/extensions", body)
+    assert failed.value.problem["status"] == 422
+    assert pointers(failed.value.problem) in (["/effect"], ["/experimentIds"])
+
+
+def test_the_same_key_is_the_same_job(api: Api, model: Json, fitted: list[str]) -> None:
+    body = {"modelId": model["id"], "experimentIds": fitted[:1]}
+    jobs = [api.http.post("/comparisons", json=body, headers={"Idempotency-Key": "c1"}).json() for _ in range(2)]
+    assert jobs[0]["id"] == jobs[1]["id"]
+    other = api.http.post("/comparisons", json={**body, "meanValue": False}, headers={"Idempotency-Key": "c1"})
+    assert api.problem(other)["status"] == 409
+    assert api.finished(jobs[0])["result"]["kind"] == "comparisons"

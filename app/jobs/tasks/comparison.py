@@ -16,6 +16,7 @@ from app.schemas.comparisons import ComparedExperiment, Data
 from app.schemas.experiments import Experiment
 from app.schemas.models import Model
 from app.schemas.plants import Plant
+from identification.comparison.batch import Batch
 from identification.comparison.compare import Comparison, compare
 from identification.comparison.gather import gather
 
@@ -35,8 +36,8 @@ def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
         if not places:
             continue
         context.progress(0.1 + 0.4 * PARTS.index(data), "the fitted data" if data == "fitted" else "held-out data")
-        found = _compared(payload, data, places, context)
-        parts.append(part_document(data, found).as_json())
+        found, batches = _compared(payload, data, places, context)
+        parts.append(part_document(data, found, batches).as_json())
         documents = compared_experiments(data, found, [experiments[i] for i in places])
         compared |= dict(zip(places, documents, strict=True))
         arrays |= map_arrays(found, places)
@@ -49,9 +50,11 @@ def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
     return TaskResult(document, context.arrays.put(arrays))
 
 
-def _compared(payload: dict[str, Any], data: Data, places: list[int], context: TaskContext) -> Comparison:
+def _compared(
+    payload: dict[str, Any], data: Data, places: list[int], context: TaskContext
+) -> tuple[Comparison, tuple[Batch, ...]]:
     model = extended_model(Model.model_validate(payload["model"]), Plant.model_validate(payload["plant"]))
     with field_named(FIELDS, "/experimentIds"), within_doubles():
         measured = kept_measurements([payload["experiments"][i] for i in places], context.arrays)
         batches = gather(measured, payload["request"]["meanValue"])
-        return compare(model, batches, fitted=data == "fitted")
+        return compare(model, batches, fitted=data == "fitted"), batches
