@@ -1,6 +1,6 @@
 """Experiments: documents and kept arrays to measurements."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -13,6 +13,7 @@ from app.schemas.experiments import (
     MatrixFrequencyResponseRequest,
     TimeRecordRequest,
 )
+from app.store.arrays import ArrayStore
 from identification.errors import ShapeError
 from identification.signals import FrequencyResponse, Measurement, TimeRecord
 
@@ -81,3 +82,8 @@ def kept_measurement(experiment: Experiment, arrays: Mapping[str, NDArray[Any]])
         arrays.get("variance"),
         experiment.variance_degrees_of_freedom,
     )
+
+
+def kept_measurements(given: Sequence[Mapping[str, Any]], arrays: ArrayStore) -> list[Measurement]:
+    """The measurements of the experiments in a payload, {"document": …, "arrays": hash} each."""
+    return [kept_measurement(Experiment.model_validate(one["document"]), arrays.get(one["arrays"])) for one in given]

@@ -1,4 +1,4 @@
-"""The catalogue of estimators, targets, spectrum families and basis functions."""
+"""The catalogue of estimators, targets, spectrum families, basis functions and effects."""
 
 from fastapi import APIRouter
 
@@ -10,5 +10,5 @@ router = APIRouter(prefix="/catalogue", tags=["catalogue"])
 
 @router.get("")
 def get_catalogue() -> Catalogue:
-    """What estimators, targets, spectrum families and basis functions there are, with their options and units."""
+    """What estimators, targets, spectrum families, basis functions and effects there are, with options and units."""
     return catalogue()

@@ -5,10 +5,11 @@ from typing import Annotated
 from fastapi import APIRouter, Query, Response
 
 from app.dependencies import ContainerDependency, Cursor, IdempotencyKey, Limit, ResourcesDependency
+from app.schemas.extensions import ExtensionRequest
 from app.schemas.jobs import Job
 from app.schemas.models import Model, ModelFrequencyResponse, ModelList, ModelRequest, StatedModelRequest
 from app.schemas.state_space import StateSpaceModelRequest
-from app.services import model_responses, models, state_space_models
+from app.services import extensions, model_responses, models, state_space_models
 from app.services.jobs import accepted
 
 router = APIRouter(prefix="/models", tags=["models"])
@@ -55,6 +56,18 @@ def list_models(
 def get_model(modelId: str, resources: ResourcesDependency) -> Model:
     """One model with its accuracy and where it came from."""
     return models.get(resources, modelId)
+
+
+@router.post("/{modelId}/extensions", status_code=202)
+def create_extension(
+    modelId: str,
+    body: ExtensionRequest,
+    container: ContainerDependency,
+    response: Response,
+    key: IdempotencyKey = None,
+) -> Job:
+    """Add a physical effect to a model; makes a new version of it beside the old one."""
+    return accepted(extensions.submit(container, modelId, body, key), response)
 
 
 @router.get("/{modelId}/frequency-response")

@@ -1,10 +1,10 @@
 """What there is to choose from."""
 
-from typing import Any
+from typing import Any, Literal
 
 from pydantic import Field
 
-from app.schemas.common import CamelModel
+from app.schemas.common import CamelModel, Double, Integer
 
 
 class CatalogueOption(CamelModel):
@@ -24,8 +24,33 @@ class CatalogueEntry(CamelModel):
     options: list[CatalogueOption]
 
 
+class EffectParameterEntry(CamelModel):
+    """A parameter of an effect besides its amplitude."""
+
+    name: str
+    quantity: Literal["frequency", "time", "input", "output", "velocity", "number"] = Field(description="what it is")
+    fitted: bool = Field(description="adjusted together with the amplitude; else only searched")
+
+
+class EffectEntry(CamelModel):
+    """A physical effect that models may lack and be extended by."""
+
+    kind: str = Field(description="what to name in `effects` or `effect`")
+    title: str
+    description: str
+    domain: Literal["general", "mechanical", "impedance"] = Field(description="the kind of plant it belongs to")
+    place: str = Field(description="where it acts")
+    unit: str = Field(description="unit of its amplitude")
+    sign: Literal["any", "positive", "negative"] = Field(description="of a physical amplitude")
+    largest_amplitude: Double | None = Field(description="largest physical size; null when there is no bound")
+    needs_records: bool = Field(description="shows only in periodic records, not in frequency responses")
+    amplitudes: Integer = Field(description="how many amplitudes it has")
+    parameters: list[EffectParameterEntry]
+    source: str = Field(description="where it is described")
+
+
 class Catalogue(CamelModel):
-    """All estimators, targets, spectrum families and basis functions of this service."""
+    """All estimators, targets, spectrum families, basis functions and physical effects of this service."""
 
     software_version: str
     bases: list[CatalogueEntry] = Field(description="functions of one scheduling variable")
@@ -38,3 +63,4 @@ class Catalogue(CamelModel):
     pole_regions: list[CatalogueEntry] = Field(description="where the poles of state-space models must lie")
     targets: list[CatalogueEntry] = Field(description="accuracy targets of designs")
     spectrum_families: list[CatalogueEntry] = Field(description="input spectra of designs")
+    effects: list[EffectEntry] = Field(description="what a diagnosis looks for and models are extended by")

@@ -6,6 +6,7 @@ from pydantic import Field
 
 from app.arrays import ComplexVector, Matrix, Vector
 from app.schemas.common import CamelModel, Double, Integer, Timestamp
+from app.schemas.effects import PlacedEffectDocument
 from app.schemas.experiments import Identifier
 from app.schemas.families import LocalEstimator, LpvEstimator, SpectralEstimator
 from app.schemas.outcomes import OutcomeDocument, PolesAtPoint, TestDocument
@@ -76,6 +77,23 @@ class LocalModelDocument(CamelModel):
     experiment_id: str | None = Field(description="the experiment that it was fitted to")
 
 
+class ErrorsDocument(CamelModel):
+    """Relative errors ‖Y − Ŷ‖/‖Y‖ at the excited lines."""
+
+    fitted: Double
+    held_out: Double | None = Field(description="null when no experiment was held out")
+    lack_of_fit: TestDocument = Field(description="on the fitted experiments")
+
+
+class ExtensionReport(CamelModel):
+    """What an effect brought: errors of the model without it and with it, fitted to the same experiments."""
+
+    diagnosis_id: str | None = Field(description="the diagnosis that pointed to the effect")
+    held_out_experiment_ids: list[str]
+    before: ErrorsDocument = Field(description="the parent, its parameters fitted once more to these experiments")
+    after: ErrorsDocument
+
+
 class Model(CamelModel):
     """A parameter-varying model with its accuracy and where it came from."""
 
@@ -86,7 +104,7 @@ class Model(CamelModel):
     job_id: str | None
     name: Text
     description: LongText
-    origin: Literal["identified", "stated"]
+    origin: Literal["identified", "stated", "extended"]
     structure: Structure
     basis: ProductBasisDocument
     coefficient_bases: list[CoefficientBasis]
@@ -111,6 +129,16 @@ class Model(CamelModel):
     parent_id: str | None = Field(description="the model that this one is a new version of")
     seed: Integer | None = Field(description="seed of what was drawn at random; null when nothing was")
     state_space: StateSpaceResult | None = Field(default=None, description="of a state-space model; null for others")
+    effects: list[PlacedEffectDocument] = Field(
+        default_factory=list, description="physical effects in the model; poles and theta are those of the plant itself"
+    )
+    joint_parameter_names: list[str] = Field(
+        default_factory=list, description="entries of theta that belong to G, then the parameters of the effects"
+    )
+    joint_covariance: Matrix | None = Field(
+        default=None, description="of these together; null without effects and where the data leave them open"
+    )
+    extension: ExtensionReport | None = Field(default=None, description="what the last effect brought")
 
 
 class ModelList(CamelModel):

@@ -1,12 +1,16 @@
 """The catalogue: what discovery found, with the schemas of its options."""
 
 import json
-from typing import Any
+from typing import Any, Literal
 
 from app import __version__
-from app.schemas.catalogue import Catalogue, CatalogueEntry, CatalogueOption
+from app.schemas.catalogue import Catalogue, CatalogueEntry, CatalogueOption, EffectEntry, EffectParameterEntry
 from app.schemas.families import FAMILIES
-from app.schemas.plug_ins import PlugInDocument
+from app.schemas.plug_ins import PlugInDocument, summary
+from identification.effects.library import library
+from identification.places.place import Effect
+
+SIGNS: dict[int, Literal["any", "positive", "negative"]] = {0: "any", 1: "positive", -1: "negative"}
 
 
 def catalogue() -> Catalogue:
@@ -14,7 +18,30 @@ def catalogue() -> Catalogue:
     entries = {
         family: [_entry(kind, model) for kind, model in found.models.items()] for family, found in FAMILIES.items()
     }
-    return Catalogue.model_validate({"softwareVersion": __version__, **entries})
+    effects = [_effect(one) for one in library()]
+    return Catalogue.model_validate({"softwareVersion": __version__, **entries, "effects": effects})
+
+
+def _effect(effect: Effect) -> EffectEntry:
+    return EffectEntry.model_validate(
+        {
+            "kind": effect.kind,
+            "title": effect.title,
+            "description": summary(type(effect)),
+            "domain": effect.domain,
+            "place": effect.place,
+            "unit": effect.unit,
+            "sign": SIGNS[effect.sign],
+            "largestAmplitude": effect.largest,
+            "needsRecords": effect.needs_records,
+            "amplitudes": effect.shapes,
+            "parameters": [
+                EffectParameterEntry(name=one.name, quantity=one.quantity, fitted=one.fitted)
+                for one in effect.parameters
+            ],
+            "source": effect.source,
+        }
+    )
 
 
 def _entry(kind: str, model: type[PlugInDocument]) -> CatalogueEntry:

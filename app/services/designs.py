@@ -13,7 +13,7 @@ from app.schemas.models import Model
 from app.schemas.plants import Plant
 from app.services.documents import fields, items, named, of_plant
 from app.services.jobs import fingerprint
-from app.services.models import model_of
+from app.services.models import model_of, require_without_effects
 from app.services.plants import plant_of
 from app.store.resources import Resource, ResourceRepository
 
@@ -32,6 +32,7 @@ def submit(container: Container, request: DesignRequest, key: str | None) -> Job
 
 def payload(plant: Plant, model: Model, request: DesignRequest) -> dict[str, Any]:
     """What the task gets; raises UnprocessableError when the request does not fit plant and model."""
+    require_without_effects(model, "/modelId")
     with pointing({}, default="/modelId"):
         known = kept_model(model, plant)
     with pointing(POINTERS, default="/operatingPoints"):

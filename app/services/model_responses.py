@@ -13,7 +13,7 @@ from app.conversion.state_space import kept_local, kept_state_space
 from app.errors import UnprocessableError
 from app.schemas.models import Model, ModelFrequencyResponse
 from app.schemas.plants import Plant
-from app.services.models import get
+from app.services.models import get, require_without_effects
 from app.services.plants import get as get_plant
 from app.store.resources import ResourceRepository
 from identification.arrays import ComplexArray, FloatArray
@@ -43,6 +43,7 @@ def frequency_response(
 ) -> ModelFrequencyResponse:
     """The response of a model at one operating point over a band (lowest, highest, count), with 95 % bands."""
     document = get(resources, model_id)
+    require_without_effects(document, "/modelId", "path")
     plant = get_plant(resources, document.plant_id)
     _check_channel(document, channel)
     with pointing({}, "/operatingPoint", "query"):

@@ -57,6 +57,7 @@ def payload(
         with pointing({}, default="/experimentIds"):
             dependence.require_identifiable([experiment.operating_point for experiment in documents])
     else:
+        require_without_effects(prior, "/priorModelId")
         check_prior(plant, prior, structure, dependence, request.experiment_ids)
     return {
         "plant": plant.as_json(),
@@ -107,6 +108,17 @@ def unstable_advice(structure: RationalStructure, model: LpvModel) -> str:
     what = "G is unstable" if structure.n_noise == 0 else "G, H or the inverse of H is unstable"
     names = ", ".join(model.parameter_names)
     return f"with these parameters ({names}) {what} somewhere in the range; correct theta or narrow the range"
+
+
+def require_without_effects(model: Model, pointer: str, location: str = "body") -> None:
+    """Raises UnprocessableError for a model with effects, where only the plant itself would be looked at."""
+    if model.effects:
+        kinds = ", ".join(one.kind for one in model.effects)
+        raise UnprocessableError.at(
+            pointer,
+            f"the model carries effects ({kinds}) that are not taken into account here; name its parent",
+            location,
+        )
 
 
 def model_of(resource: Resource) -> Model:

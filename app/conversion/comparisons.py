@@ -1,0 +1,78 @@
+"""Comparisons: what was found of one part of the data, to documents and arrays."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.arrays import finite_or_none
+from app.conversion.models import test_documents
+from app.schemas.comparisons import (
+    BandTest,
+    ComparedExperiment,
+    ComparisonPart,
+    Data,
+    PointTest,
+)
+from app.schemas.experiments import Experiment
+from app.schemas.outcomes import TestDocument
+from identification.comparison.batch import Batch
+from identification.comparison.compare import Comparison, bands
+from identification.outcome import TestResult
+
+
+def part_document(data: Data, found: Comparison, batches: Sequence[Batch]) -> ComparisonPart:
+    """The tests of one part of the data."""
+    points = np.unique(np.concatenate([one.points for one in found.maps]), axis=0)
+    by_point = zip(points, test_documents(found.by_point), strict=True) if found.by_point else ()
+    return ComparisonPart(
+        data=data,
+        noise_known=found.overall is not None,
+        lack_of_fit=_test(found.overall),
+        by_point=[PointTest(operating_point=point.tolist(), test=test) for point, test in by_point],
+        by_band=_bands(found, batches),
+        by_line_class=test_documents(found.by_class),
+        dependence=_test(found.dependence),
+        dynamics=_test(found.dynamics),
+        between_harmonics=test_documents(found.between),
+    )
+
+
+def compared_experiments(data: Data, found: Comparison, experiments: Sequence[Experiment]) -> list[ComparedExperiment]:
+    """Fit in per cent of the experiments of one part, in the order given."""
+    return [
+        ComparedExperiment(
+            experiment_id=experiment.id,
+            operating_point=experiment.operating_point,
+            data=data,
+            fit_percent=finite_or_none(float(percent)),
+        )
+        for experiment, percent in zip(experiments, found.fit_percent, strict=True)
+    ]
+
+
+def map_arrays(found: Comparison, places: Sequence[int]) -> dict[str, NDArray[Any]]:
+    """Frequencies, residuals and line classes of each experiment by its place in the request; compared lines only."""
+    arrays: dict[str, NDArray[Any]] = {}
+    for one in found.maps:
+        for m, member in enumerate(one.members):
+            used, place = one.compared[m], places[int(member)]
+            arrays[f"frequenciesRadPerSecond{place}"] = one.frequencies[used]
+            arrays[f"residual{place}"] = one.residual[m, used]
+            arrays[f"lineClass{place}"] = one.classes[m, used]
+    return arrays
+
+
+def _bands(found: Comparison, batches: Sequence[Batch]) -> list[BandTest]:
+    if not found.by_band:
+        return []
+    pairs = zip(bands(batches), test_documents(found.by_band), strict=True)
+    return [
+        BandTest(minimum_rad_per_second=max(low, 0.0), maximum_rad_per_second=finite_or_none(high), test=test)
+        for (low, high), test in pairs
+    ]
+
+
+def _test(result: TestResult | None) -> TestDocument | None:
+    return None if result is None else test_documents((result,))[0]

@@ -1,0 +1,105 @@
+"""Diagnoses: what was found, to documents."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from app.arrays import ComplexVector
+from app.conversion.effects import effect_documents, parameters_of
+from app.conversion.models import outcome_document, test_documents
+from app.schemas.diagnoses import EffectVisibility, Evidence, MissingResponse, RankedEffect, Verdict
+from app.schemas.experiments import Experiment
+from identification.diagnosis import evidence as refits
+from identification.diagnosis.diagnose import Diagnosis, Visibility
+from identification.diagnosis.missing import missing_response
+from identification.diagnosis.scores import Score
+
+VERDICTS: dict[str, Verdict] = {
+    "nothing missing": "nothingMissing",
+    "explained": "explained",
+    "partly explained": "partlyExplained",
+    "not in the library": "notInTheLibrary",
+}
+
+
+def findings(found: Diagnosis, experiments: Sequence[Experiment]) -> dict[str, Any]:
+    """What a diagnosis found, as the fields of its document."""
+    order = _order(found)
+    ranking = [_ranked(found, found.scores[i]) for i in order]
+    before, remaining = test_documents((found.lack_of_fit, found.remaining))
+    return {
+        "verdict": VERDICTS[found.verdict],
+        "confident": bool(found.confident),
+        "announced": [one.score.candidate.effect.kind for one in found.announced],
+        "lackOfFit": before.as_json(),
+        "remaining": remaining.as_json(),
+        "explainedShare": found.explained_share,
+        "ranking": [one.as_json() for one in ranking],
+        "confusability": found.confusability[np.ix_(order, order)].tolist(),
+        "visibility": [_visibility(found, one).as_json() for one in found.visibility],
+        "missing": [one.as_json() for one in _missing(found, experiments)],
+    }
+
+
+def _order(found: Diagnosis) -> list[int]:
+    """Places in `scores`: refitted effects by BIC, then the others by adjusted p."""
+    refitted = [next(i for i, s in enumerate(found.scores) if s is one.score) for one in found.evidence]
+    return refitted + [i for i in range(len(found.scores)) if i not in refitted]
+
+
+def _ranked(found: Diagnosis, score: Score) -> RankedEffect:
+    effect = score.signature.placed.effect
+    refit = next((one for one in found.evidence if one.score is score), None)
+    return RankedEffect(
+        kind=effect.kind,
+        title=effect.title,
+        place=effect.place,
+        unit=effect.unit,
+        announced=any(one.score is score for one in found.announced),
+        parameters=parameters_of(effect),
+        score=float(score.statistic),
+        p_value=float(score.p_value),
+        adjusted_p_value=float(score.adjusted_p),
+        evidence=None if refit is None else _evidence(refit),
+    )
+
+
+def _evidence(one: refits.Evidence) -> Evidence:
+    return Evidence(
+        effect=effect_documents(one.fit.model)[-1],
+        bic=one.bic,
+        weight=one.weight,
+        chi_square_explained=float(one.explained),
+        added_parameters=one.parameters,
+        chi_square_per_parameter=float(one.explained_per_parameter),
+        outcome=outcome_document(one.fit.outcome),
+    )
+
+
+def _visibility(found: Diagnosis, one: Visibility) -> EffectVisibility:
+    judged = all(one.effect.judgeable(flow) for flow in found.base.flows)
+    return EffectVisibility(
+        kind=one.effect.kind,
+        title=one.effect.title,
+        status="visible" if one.amplitude is not None else "invisible" if judged else "notJudged",
+        detectable_amplitude=one.amplitude,
+        kept=float(one.kept),
+        reason=one.reason,
+    )
+
+
+def _missing(found: Diagnosis, experiments: Sequence[Experiment]) -> list[MissingResponse]:
+    """One an experiment, where the kernel meets excited lines."""
+    rows: dict[int, MissingResponse] = {}
+    for table in missing_response(found.base):
+        for m, member in enumerate(table.members):
+            seen = np.isfinite(table.response[m]) & np.isfinite(table.deviation[m])
+            rows[int(member)] = MissingResponse(
+                experiment_id=experiments[int(member)].id,
+                operating_point=experiments[int(member)].operating_point,
+                frequencies_rad_per_second=table.frequencies[seen].tolist(),
+                response=ComplexVector.of(table.response[m, seen]),
+                standard_deviation=table.deviation[m, seen].tolist(),
+            )
+    return [rows[i] for i in sorted(rows)]

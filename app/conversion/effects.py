@@ -1,0 +1,86 @@
+"""Effects in models: documents to objects and back."""
+
+import dataclasses
+import typing
+from collections.abc import Sequence
+
+import numpy as np
+
+from app.arrays import finite_list_or_none
+from app.conversion.models import kept_model
+from app.schemas.effects import EffectParameter, PlacedEffectDocument
+from app.schemas.models import Model
+from app.schemas.plants import Plant
+from identification.arrays import FloatArray
+from identification.effects.library import library
+from identification.extension.model import ExtendedModel, PlacedEffect
+from identification.places.place import Effect
+
+
+def effect_of(kind: str) -> Effect | None:
+    """The effect of the library, or None when there is none of this kind."""
+    return next((one for one in library() if one.kind == kind), None)
+
+
+def extended_model(model: Model, plant: Plant) -> ExtendedModel:
+    """The model of a document with the effects that it carries."""
+    covariance = None if model.joint_covariance is None else np.array(model.joint_covariance)
+    return ExtendedModel(kept_model(model, plant), tuple(map(placed_effect, model.effects)), covariance)
+
+
+def placed_effect(document: PlacedEffectDocument) -> PlacedEffect:
+    """The effect of a document."""
+    effect = effect_of(document.kind)
+    assert effect is not None, "kept models carry effects of the library"
+    hints = typing.get_type_hints(type(effect))
+    values = {one.name: round(one.value) if hints[one.name] is int else one.value for one in document.parameters}
+    coefficients = np.array(document.coefficients, dtype=np.float64)
+    return PlacedEffect(dataclasses.replace(effect, **values), coefficients, document.amplitude_degree)
+
+
+def effect_documents(model: ExtendedModel) -> list[PlacedEffectDocument]:
+    """The documents of all effects in a model."""
+    start, documents = model.base.plant_size, []
+    for one in model.effects:
+        stop = start + len(one.parameters())
+        documents.append(_document(one, _deviations(model.covariance, slice(start, stop))))
+        start = stop
+    return documents
+
+
+def parameters_of(effect: Effect, deviations: Sequence[float] | None = None) -> list[EffectParameter]:
+    """The parameters of an effect besides its amplitude; `deviations` of those that a refit adjusts."""
+    names = effect.fitted_names()
+    known = dict(zip(names, deviations, strict=True)) if deviations is not None else {}
+    return [
+        EffectParameter(
+            name=field.name,
+            value=float(getattr(effect, field.name)),
+            standard_deviation=known.get(field.name),
+            fitted=field.name in names,
+        )
+        for field in dataclasses.fields(effect)
+        if isinstance(getattr(effect, field.name), int | float)
+    ]
+
+
+def _deviations(covariance: FloatArray | None, part: slice) -> FloatArray | None:
+    if covariance is None or not np.isfinite(covariance).all():
+        return None
+    return np.asarray(np.sqrt(np.maximum(np.diagonal(covariance)[part], 0.0)))
+
+
+def _document(one: PlacedEffect, deviations: FloatArray | None) -> PlacedEffectDocument:
+    known = deviations is not None
+    found = np.full(len(one.parameters()), np.nan) if deviations is None else deviations
+    amplitudes = found[: one.size].reshape(one.coefficients.shape)
+    return PlacedEffectDocument(
+        kind=one.effect.kind,
+        title=one.effect.title,
+        place=one.effect.place,
+        unit=one.effect.unit,
+        amplitude_degree=one.degree,
+        coefficients=one.coefficients.tolist(),
+        standard_deviations=finite_list_or_none(amplitudes),
+        parameters=parameters_of(one.effect, found[one.size :].tolist() if known else None),
+    )

@@ -1,0 +1,44 @@
+"""Extended models to documents."""
+
+from typing import Any
+
+from app.arrays import finite_list_or_none
+from app.conversion.effects import effect_documents
+from app.conversion.models import accuracy_documents, range_documents
+from identification.extension.model import ExtendedModel
+
+
+def joint_names(model: ExtendedModel) -> list[str]:
+    """Names of θ_G, then of the parameters of each effect, such as cubic_stiffness.e[0], resonance.frequency."""
+    names = list(model.base.parameter_names[: model.base.plant_size])
+    for one in model.effects:
+        names += [f"{one.effect.kind}.e[{i}]" for i in range(one.size)]
+        names += [f"{one.effect.kind}.{name}" for name in one.effect.fitted_names()]
+    return names
+
+
+def extended_documents(model: ExtendedModel) -> dict[str, Any]:
+    """What of the document of a model follows from its parameters and effects."""
+    over_range = range_documents(model.base)
+    return {
+        "coefficientNames": list(model.base.structure.coefficient_names),
+        "parameterNames": list(model.base.parameter_names),
+        **_accuracy(model),
+        "stable": over_range["stable"],
+        "poles": [poles.as_json() for poles in over_range["poles"]],
+        "effects": [one.as_json() for one in effect_documents(model)],
+        "jointParameterNames": joint_names(model),
+        "jointCovariance": None if model.covariance is None else finite_list_or_none(model.covariance),
+    }
+
+
+def _accuracy(model: ExtendedModel) -> dict[str, Any]:
+    """θ with its part of the joint covariance; that of a whole θ with a noise model is not estimated here."""
+    documents = accuracy_documents(model.base)
+    size = model.base.plant_size
+    documents |= {"covariance": None, "standardDeviations": None}
+    if model.covariance is not None and size == len(model.base.theta):
+        part = model.covariance[:size, :size]
+        documents["covariance"] = finite_list_or_none(part)
+        documents["standardDeviations"] = [float(value) ** 0.5 for value in part.diagonal()]
+    return documents

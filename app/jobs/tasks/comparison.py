@@ -1,0 +1,60 @@
+"""Holds a model against experiments, fitted ones and held-out ones apart."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app import __version__
+from app.conversion.comparisons import compared_experiments, map_arrays, part_document
+from app.conversion.effects import extended_model
+from app.conversion.experiments import kept_measurements
+from app.conversion.extremes import within_doubles
+from app.conversion.fields import field_named
+from app.jobs.task import TaskContext, TaskResult
+from app.schemas.comparisons import ComparedExperiment, Data
+from app.schemas.experiments import Experiment
+from app.schemas.models import Model
+from app.schemas.plants import Plant
+from identification.comparison.batch import Batch
+from identification.comparison.compare import Comparison, compare
+from identification.comparison.gather import gather
+
+KIND = "comparison"
+FIELDS = {"model": "/modelId", "effects": "/modelId"}
+PARTS: tuple[Data, ...] = ("fitted", "heldOut")
+
+
+def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
+    """The tests and maps of each part of the data."""
+    experiments = [Experiment.model_validate(given["document"]) for given in payload["experiments"]]
+    arrays: dict[str, NDArray[Any]] = {"operatingPoints": np.array([one.operating_point for one in experiments])}
+    parts: list[dict[str, Any]] = []
+    compared: dict[int, ComparedExperiment] = {}
+    for data in PARTS:
+        places = [i for i, given in enumerate(payload["data"]) if given == data]
+        if not places:
+            continue
+        context.progress(0.1 + 0.4 * PARTS.index(data), "the fitted data" if data == "fitted" else "held-out data")
+        found, batches = _compared(payload, data, places, context)
+        parts.append(part_document(data, found, batches).as_json())
+        documents = compared_experiments(data, found, [experiments[i] for i in places])
+        compared |= dict(zip(places, documents, strict=True))
+        arrays |= map_arrays(found, places)
+    document = {
+        **{name: payload["request"][name] for name in ("name", "description", "modelId", "meanValue")},
+        "softwareVersion": __version__,
+        "experiments": [compared[i].as_json() for i in range(len(experiments))],
+        "parts": parts,
+    }
+    return TaskResult(document, context.arrays.put(arrays))
+
+
+def _compared(
+    payload: dict[str, Any], data: Data, places: list[int], context: TaskContext
+) -> tuple[Comparison, tuple[Batch, ...]]:
+    model = extended_model(Model.model_validate(payload["model"]), Plant.model_validate(payload["plant"]))
+    with field_named(FIELDS, "/experimentIds"), within_doubles():
+        measured = kept_measurements([payload["experiments"][i] for i in places], context.arrays)
+        batches = gather(measured, payload["request"]["meanValue"])
+        return compare(model, batches, fitted=data == "fitted"), batches

@@ -1,0 +1,45 @@
+"""Looks for the physical effect that a model lacks."""
+
+from typing import Any
+
+from app import __version__
+from app.conversion.diagnoses import findings
+from app.conversion.effects import effect_of, extended_model
+from app.conversion.experiments import kept_measurements
+from app.conversion.extremes import within_doubles
+from app.conversion.fields import field_named
+from app.jobs.task import TaskContext, TaskResult
+from app.schemas.diagnoses import DiagnosisRequest
+from app.schemas.experiments import Experiment
+from app.schemas.models import Model
+from app.schemas.plants import Plant
+from identification.comparison.gather import gather
+from identification.diagnosis.diagnose import diagnose
+from identification.effects.library import library
+from identification.places.place import Effect
+
+KIND = "diagnosis"
+FIELDS = {"effects": "/modelId", "model": "/modelId"}
+KEPT = ("name", "description", "comparisonId", "amplitudeDegree", "meanValue", "seed")
+
+
+def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
+    """Fit, score tests of all effects, refit of the short list."""
+    request = DiagnosisRequest.model_validate(payload["request"])
+    experiments = [Experiment.model_validate(given["document"]) for given in payload["experiments"]]
+    model = extended_model(Model.model_validate(payload["model"]), Plant.model_validate(payload["plant"]))
+    with field_named(FIELDS, payload["pointer"]), within_doubles():
+        context.progress(0.1, "the spectra of the experiments")
+        batches = gather(kept_measurements(payload["experiments"], context.arrays), request.mean_value)
+        context.progress(0.3, "what each effect would change")
+        found = diagnose(model, batches, _effects(request), request.amplitude_degree, request.seed)
+        document = findings(found, experiments)
+    kept = {name: payload["request"][name] for name in KEPT}
+    traced = {"modelId": payload["model"]["id"], "experimentIds": [one.id for one in experiments]}
+    return TaskResult({"softwareVersion": __version__, **kept, **traced, **document})
+
+
+def _effects(request: DiagnosisRequest) -> tuple[Effect, ...]:
+    if request.effects is None:
+        return library(request.domain)
+    return tuple(effect for kind in request.effects if (effect := effect_of(kind)) is not None)

@@ -1,0 +1,110 @@
+"""Adds a physical effect to a model: θ and all its effects are fitted together."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from app import __version__
+from app.conversion.effects import effect_of, extended_model
+from app.conversion.experiments import kept_measurements
+from app.conversion.extensions import extended_documents
+from app.conversion.extremes import require_finite, within_doubles
+from app.conversion.fields import field_named
+from app.conversion.models import outcome_document, test_documents
+from app.jobs.task import TaskContext, TaskResult
+from app.schemas.extensions import ExtensionRequest
+from app.schemas.models import ErrorsDocument, ExtensionReport, Model
+from app.schemas.plants import Plant
+from identification.comparison.batch import Batch
+from identification.comparison.gather import gather
+from identification.diagnosis.diagnose import misfit, rows_of
+from identification.diagnosis.evidence import refit_short_list
+from identification.diagnosis.scores import score_tests
+from identification.diagnosis.signatures import candidates
+from identification.diagnosis.staircase import relative_error
+from identification.errors import MisuseError
+from identification.extension.fit import Fit, fit
+from identification.extension.model import require_matching
+from identification.places.place import Effect
+
+KIND = "extension"
+FIELDS = {"effects": "/effect"}
+INHERITED = ("structure", "basis", "coefficientBases", "localEstimator", "lpvEstimator", "spectralEstimator")
+
+
+def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
+    """The parent fitted to the experiments, the effect added, the errors of both."""
+    request = ExtensionRequest.model_validate(payload["request"])
+    parent = Model.model_validate(payload["model"])
+    model = extended_model(parent, Plant.model_validate(payload["plant"]))
+    with field_named({}, "/heldOutExperimentIds"), within_doubles():
+        given = payload["heldOut"]
+        held_out = gather(kept_measurements(given, context.arrays), request.mean_value) if given else ()
+        require_matching(model.base, held_out)
+    with field_named(FIELDS, "/experimentIds"), within_doubles():
+        batches = gather(kept_measurements(payload["experiments"], context.arrays), request.mean_value)
+        context.progress(0.2, "the model without the effect")
+        base = fit(model, rows_of(model, batches))
+        context.progress(0.4, "the model with the effect")
+        grown = _grown(base, _effect(request), request)
+        require_finite(grown.model.base)
+        report = ExtensionReport(
+            diagnosis_id=request.diagnosis_id,
+            held_out_experiment_ids=list(request.held_out_experiment_ids),
+            before=_errors(base, batches, held_out),
+            after=_errors(grown, batches, held_out),
+        )
+        document = extended_documents(grown.model)
+    return TaskResult({**_traced(payload, parent, request), **document, **_outcome(grown, report)})
+
+
+def _effect(request: ExtensionRequest) -> Effect:
+    effect = effect_of(request.effect)
+    assert effect is not None, "checked when the job was submitted"
+    return effect
+
+
+def _grown(base: Fit, effect: Effect, request: ExtensionRequest) -> Fit:
+    """The effect from its best score, fitted with everything else; raises MisuseError when these data have no room."""
+    judged = candidates(base, [effect], request.amplitude_degree)
+    if not judged[0].signatures:
+        raise MisuseError(f"{effect.title}: {judged[0].why_not}", "effects")
+    scores = score_tests(base, judged, np.random.default_rng(request.seed))
+    refitted = refit_short_list(base, scores)
+    if not refitted:
+        raise MisuseError(
+            f"{effect.title}: fitted to these experiments it leaves its physical range; it is not what is missing",
+            "effects",
+        )
+    best = refitted[0].fit
+    return fit(best.model, best.rows, exact=best.rows.scaled)
+
+
+def _errors(found: Fit, batches: Sequence[Batch], held_out: Sequence[Batch]) -> ErrorsDocument:
+    return ErrorsDocument(
+        fitted=relative_error(found.model, batches),
+        held_out=relative_error(found.model, held_out) if held_out else None,
+        lack_of_fit=test_documents((misfit("lack of fit", found),))[0],
+    )
+
+
+def _traced(payload: dict[str, Any], parent: Model, request: ExtensionRequest) -> dict[str, Any]:
+    return {
+        **{name: payload["model"][name] for name in INHERITED},
+        **{name: payload["request"][name] for name in ("name", "description", "seed")},
+        "softwareVersion": __version__,
+        "origin": "extended",
+        "localModels": [],
+        "experimentIds": list(request.experiment_ids),
+        "designId": None,
+        "parentId": parent.id,
+    }
+
+
+def _outcome(grown: Fit, report: ExtensionReport) -> dict[str, Any]:
+    return {
+        "outcome": outcome_document(grown.outcome).as_json(),
+        "tests": [report.after.lack_of_fit.as_json()],
+        "extension": report.as_json(),
+    }

@@ -1,0 +1,113 @@
+"""Comparisons of models with measurements."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from app.arrays import ComplexVector, Vector
+from app.schemas.common import CamelModel, Double, Timestamp
+from app.schemas.experiments import Identifier
+from app.schemas.outcomes import TestDocument
+from app.schemas.plants import LongText, Text
+
+ExperimentIds = Annotated[list[Identifier], Field(min_length=1, max_length=1000)]
+Data = Literal["fitted", "heldOut"]
+LineClass = Literal["excited", "unexcitedOdd", "unexcitedEven"]
+
+
+class ComparisonRequest(CamelModel):
+    """Which model to hold against which experiments."""
+
+    model_id: Identifier
+    experiment_ids: ExperimentIds = Field(description="experiments of the plant of the model, fitted or held out")
+    name: Text = ""
+    description: LongText = ""
+    mean_value: bool = Field(default=True, description="compare the mean value of periodic records too")
+
+
+class ComparedExperiment(CamelModel):
+    """How well the model explains one experiment."""
+
+    experiment_id: str
+    operating_point: Vector
+    data: Data = Field(description="whether the model, or a version before it, was fitted to this experiment")
+    fit_percent: Double | None = Field(description="100 (1 − ‖y − ŷ‖/‖y‖) at the excited lines; null for zero output")
+
+
+class PointTest(CamelModel):
+    """Lack of fit at one operating point."""
+
+    operating_point: Vector
+    test: TestDocument
+
+
+class BandTest(CamelModel):
+    """Lack of fit in one band of frequencies."""
+
+    minimum_rad_per_second: Double
+    maximum_rad_per_second: Double | None = Field(description="null: all above")
+    test: TestDocument
+
+
+class ComparisonPart(CamelModel):
+    """Tests of the experiments that were fitted, or of those that were held out.
+
+    Fitted: the model is fitted once more to these very data and its parameters are taken off the degrees of freedom.
+    Held out: the uncertainty of the model is added to that of the noise. All tests are null or empty where the size of
+    the noise is not known.
+    """
+
+    data: Data
+    noise_known: bool = Field(description="whether the size of the noise is known from variances or periods")
+    lack_of_fit: TestDocument | None = Field(description="the whitened residuals against the noise")
+    by_point: list[PointTest]
+    by_band: list[BandTest] = Field(description="below, in six bands over, and above the excited frequencies")
+    by_line_class: list[TestDocument] = Field(
+        description="excited lines show linear misfit, unexcited odd and even ones odd and even nonlinearity"
+    )
+    dependence: TestDocument | None = Field(
+        description="whether one LTI model per operating point fits better than the dependence on p; null if held out"
+    )
+    dynamics: TestDocument | None = Field(description="whether even those do not fit; null if held out")
+    between_harmonics: list[TestDocument] = Field(description="disturbances with frequencies of their own")
+
+
+class Comparison(CamelModel):
+    """A model held against measurements; the maps for pictures are found under `/maps` and `/file`."""
+
+    id: str
+    created_at: Timestamp
+    software_version: str
+    plant_id: str
+    job_id: str | None
+    name: Text
+    description: LongText
+    model_id: str
+    mean_value: bool
+    experiments: list[ComparedExperiment]
+    parts: list[ComparisonPart] = Field(description="first what was fitted, then what was held out, where given")
+
+
+class ComparisonList(CamelModel):
+    """A page of comparisons."""
+
+    items: list[Comparison]
+    next_cursor: str | None = Field(default=None, description="give as `cursor` for the next page")
+
+
+class ResidualRow(CamelModel):
+    """Normalised residuals of one experiment, one a compared line."""
+
+    experiment_id: str
+    operating_point: Vector
+    data: Data
+    frequencies_rad_per_second: Vector
+    residual: ComplexVector = Field(description="z with E|z|² = 1 where the model explains the measurement")
+    line_classes: list[LineClass]
+
+
+class ComparisonMaps(CamelModel):
+    """Normalised residuals over operating point and frequency, one row an experiment."""
+
+    comparison_id: str
+    rows: list[ResidualRow]

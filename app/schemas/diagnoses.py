@@ -1,0 +1,139 @@
+"""Diagnoses: which physical effect a model lacks."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from app.arrays import ComplexVector, Matrix, Vector
+from app.schemas.common import CamelModel, Double, Integer, Timestamp
+from app.schemas.comparisons import ExperimentIds
+from app.schemas.effects import EffectParameter, PlacedEffectDocument
+from app.schemas.experiments import Identifier
+from app.schemas.outcomes import OutcomeDocument, TestDocument
+from app.schemas.plants import LongText, Text
+
+Kind = Annotated[str, Field(min_length=1, max_length=64)]
+Verdict = Literal["nothingMissing", "explained", "partlyExplained", "notInTheLibrary"]
+AmplitudeDegree = Annotated[Integer, Field(ge=0, le=3)]
+Seed = Annotated[Integer, Field(ge=0)]
+
+
+class DiagnosisRequest(CamelModel):
+    """What to judge by: a comparison, or a model and experiments."""
+
+    comparison_id: Identifier | None = Field(
+        default=None, description="its model and those of its experiments that were fitted, or all if none was"
+    )
+    model_id: Identifier | None = Field(default=None, description="in place of a comparison")
+    experiment_ids: ExperimentIds | None = Field(
+        default=None,
+        description="experiments to judge by; needed with modelId, else in place of those of the comparison",
+    )
+    effects: Annotated[list[Kind], Field(min_length=1, max_length=100)] | None = Field(
+        default=None, description="kinds of effects to judge, as in the catalogue; null for the whole library"
+    )
+    domain: Literal["general", "mechanical", "impedance"] | None = Field(
+        default=None, description="judge the effects of this kind of plant and the general ones; null for all"
+    )
+    amplitude_degree: AmplitudeDegree = Field(default=0, description="of the amplitudes in each scheduling variable")
+    mean_value: bool = Field(default=True, description="judge by the mean value of periodic records too")
+    seed: Seed = Field(default=0, description="of the draws that p-values of the whole family come from")
+    name: Text = ""
+    description: LongText = ""
+
+    @model_validator(mode="after")
+    def _one_source(self) -> "DiagnosisRequest":
+        if (self.comparison_id is None) == (self.model_id is None):
+            raise ValueError("give either comparisonId or modelId")
+        if self.model_id is not None and self.experiment_ids is None:
+            raise ValueError("give experimentIds with modelId")
+        if self.effects is not None and self.domain is not None:
+            raise ValueError("give effects or domain, not both")
+        return self
+
+
+class Evidence(CamelModel):
+    """An effect after its refit together with the parameters of the model."""
+
+    effect: PlacedEffectDocument = Field(description="as fitted, amplitude in its unit with standard deviations")
+    bic: Double = Field(description="−2 ln L + parameters · ln(numbers compared); low is good")
+    weight: Double = Field(description="share of exp(−BIC/2) among the refitted effects and the model as it is")
+    chi_square_explained: Double = Field(description="fall of minus twice the log-likelihood")
+    added_parameters: Integer
+    chi_square_per_parameter: Double
+    outcome: OutcomeDocument
+
+
+class RankedEffect(CamelModel):
+    """What speaks for one effect; by BIC where it was refitted, then by adjusted p."""
+
+    kind: str
+    title: str
+    place: str
+    unit: str
+    announced: bool = Field(description="one of those that cannot be told apart and may be what is missing")
+    parameters: list[EffectParameter] = Field(description="of the variant with the best score")
+    score: Double = Field(description="Rao score S; negative where the amplitude would have the wrong sign")
+    p_value: Double = Field(description="of the effect with all its variants")
+    adjusted_p_value: Double = Field(description="for all effects that were judged: below 0.05 something is missing")
+    evidence: Evidence | None = Field(description="null when it was not on the short list or not of this shape")
+
+
+class EffectVisibility(CamelModel):
+    """Whether these experiments could show an effect."""
+
+    kind: str
+    title: str
+    status: Literal["visible", "invisible", "notJudged"] = Field(
+        description="invisible: the fitted parameters take up all of it; notJudged: the data are not of the kind needed"
+    )
+    detectable_amplitude: Double | None = Field(description="found with 90 % power by a test at 5 %; null if never")
+    kept: Double = Field(description="share of its change of the output that the fitted parameters leave")
+    reason: str
+
+
+class MissingResponse(CamelModel):
+    """The smooth picture of what the model lacks: the response at one experiment."""
+
+    experiment_id: str
+    operating_point: Vector
+    frequencies_rad_per_second: Vector
+    response: ComplexVector = Field(description="kernel estimate of (Y − Ŷ)/U")
+    standard_deviation: Vector = Field(description="of its absolute value where only noise is left")
+
+
+class Diagnosis(CamelModel):
+    """Which missing effect the measurements point to."""
+
+    id: str
+    created_at: Timestamp
+    software_version: str
+    plant_id: str
+    job_id: str | None
+    name: Text
+    description: LongText
+    model_id: str
+    comparison_id: str | None
+    experiment_ids: list[str]
+    amplitude_degree: Integer
+    mean_value: bool
+    seed: Integer
+    verdict: Verdict
+    confident: bool = Field(description="one effect has over 95 % of the weight and leaves only noise")
+    announced: list[str] = Field(description="kinds that cannot be told apart here, best first; empty when none")
+    lack_of_fit: TestDocument = Field(description="of the model, its parameters fitted to these experiments")
+    remaining: TestDocument = Field(description="lack of fit with the best announced effect")
+    explained_share: Double = Field(description="of what noise does not explain, what the best effect takes away")
+    ranking: list[RankedEffect]
+    confusability: Matrix = Field(
+        description="squared cosine between the signatures, in the order of `ranking`; 1: cannot be told apart here"
+    )
+    visibility: list[EffectVisibility] = Field(description="of every effect that was to be judged")
+    missing: list[MissingResponse]
+
+
+class DiagnosisList(CamelModel):
+    """A page of diagnoses."""
+
+    items: list[Diagnosis]
+    next_cursor: str | None = Field(default=None, description="give as `cursor` for the next page")

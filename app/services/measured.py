@@ -1,0 +1,79 @@
+"""Which experiments a model is held against, and whether they fit it."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from app.conversion.effects import effect_of
+from app.errors import UnprocessableError
+from app.schemas.experiments import Experiment
+from app.schemas.models import Model
+from app.schemas.plants import DiscreteTimeStructure
+from app.services.documents import named_of_plant
+from app.services.experiments import experiment_of
+from app.services.fitting import SAMPLE_TIME_TOLERANCE
+from app.services.models import model_of
+from app.store.resources import ResourceRepository
+
+Measured = tuple[Experiment, str]
+LEAST_PERIODS = 2
+
+
+def measured_of_plant(
+    resources: ResourceRepository, identifiers: Sequence[str], plant_id: str, pointer: str
+) -> list[Measured]:
+    """The experiments that a list in the body names, with the hashes of their arrays."""
+    rows = named_of_plant(resources, "experiments", identifiers, plant_id, pointer)
+    return [(experiment_of(row), row.arrays or "") for row in rows]
+
+
+def payload_of(experiments: Sequence[Measured]) -> list[dict[str, Any]]:
+    """The experiments as a task gets them."""
+    return [{"document": experiment.as_json(), "arrays": arrays} for experiment, arrays in experiments]
+
+
+def fitted_experiments(resources: ResourceRepository, model: Model) -> set[str]:
+    """The experiments that a model or a version before it was fitted to."""
+    fitted, seen = set(model.experiment_ids), {model.id}
+    while model.parent_id is not None and model.parent_id not in seen:
+        row = resources.find("models", model.parent_id)
+        if row is None:
+            break
+        model = model_of(row)
+        seen.add(model.id)
+        fitted |= set(model.experiment_ids)
+    return fitted
+
+
+def check_time_domain(model: Model, experiments: Sequence[Measured], pointer: str) -> None:
+    """Raises UnprocessableError at the experiment whose sampling is not that of a model in discrete time."""
+    if not isinstance(model.structure, DiscreteTimeStructure):
+        return
+    own = model.structure.sample_time_seconds
+    for i, (experiment, _) in enumerate(experiments):
+        given = experiment.sample_time_seconds
+        if given is None or abs(given / own - 1) > SAMPLE_TIME_TOLERANCE:
+            what = "in continuous time" if given is None else f"sampled every {given:g} s"
+            raise UnprocessableError.at(
+                f"{pointer}/{i}", f"the experiment is {what}, the model every {own:g} s; compare data of one sampling"
+            )
+
+
+def periodic(experiment: Experiment) -> bool:
+    """Whether an experiment is a record of at least two periods, so that its unexcited lines say something."""
+    periods = experiment.understood.periods
+    return experiment.kind == "timeRecord" and periods is not None and periods >= LEAST_PERIODS
+
+
+def check_effect(kind: str, experiments: Sequence[Measured], pointer: str) -> None:
+    """Raises UnprocessableError for an effect that is not in the library or that these experiments cannot show."""
+    effect = effect_of(kind)
+    if effect is None:
+        raise UnprocessableError.at(pointer, f"there is no effect {kind}; /v1/catalogue names those that there are")
+    if kind == "second_variable":
+        raise UnprocessableError.at(pointer, f"{effect.title}: experiments carry no quantity logged beside the others")
+    if effect.needs_records and not all(periodic(experiment) for experiment, _ in experiments):
+        raise UnprocessableError.at(
+            pointer,
+            f"{effect.title} shows only in records of at least {LEAST_PERIODS} periods, and some of the experiments"
+            " are frequency responses or not periodic; bring in the records, or ask for effects that act linearly",
+        )

@@ -1,0 +1,88 @@
+"""How long one diagnosis takes, by effects, operating points and lines: python -m benchmarks.diagnosis_speed --runs 5.
+
+Prints the median of wall-clock and processor seconds over what is hidden; --output writes JSON.
+"""
+
+import argparse
+import json
+from pathlib import Path
+from time import perf_counter, process_time
+from typing import Any
+
+import numpy as np
+
+from benchmarks.virtual_bench.study import MODEL, effects
+from identification.comparison.gather import gather
+from identification.diagnosis.diagnose import diagnose
+from identification.signals import TimeRecord
+
+PERIOD, SAMPLE_TIME, PERIODS = 1024, 0.05, 4
+CASES = ((30, 7, 200), (10, 7, 200), (42, 7, 200), (30, 3, 200), (30, 15, 200), (30, 7, 50), (30, 7, 400))
+HIDDEN = ("nothing", "delay", "quadratic sensor")
+
+
+class _Points:
+    def __init__(self, points: np.ndarray) -> None:
+        self.points = points
+
+
+def records(points: int, lines: int, hidden: str, generator: np.random.Generator) -> list[TimeRecord]:
+    """Two records at each operating point, four periods, three per cent noise."""
+    k = np.sort(generator.choice(np.arange(1, min(2 * lines, PERIOD // 2 - 8)), lines, replace=False))
+    omega = 2 * np.pi * k / (PERIOD * SAMPLE_TIME)
+    found = []
+    for p in np.repeat(np.linspace(-1, 1, points), 2):
+        u = np.exp(2j * np.pi * generator.random(lines)) * 20 * np.sqrt(2 / lines)
+        response = MODEL.base.frequency_response([[p]], omega)[0] * (
+            np.exp(-0.005j * omega) if hidden == "delay" else 1
+        )
+        signals = []
+        for phasors in (u, response * u):
+            spectrum = np.zeros(PERIOD // 2 + 1, dtype=complex)
+            spectrum[k] = phasors
+            signals.append(np.tile(np.fft.irfft(spectrum * PERIOD / 2, n=PERIOD), PERIODS))
+        y = signals[1] + (0.05 * signals[1] ** 2 if hidden == "quadratic sensor" else 0)
+        noise = 0.03 * np.std(y) * generator.standard_normal(len(y))
+        found.append(TimeRecord(signals[0], y + noise, SAMPLE_TIME, (float(p),), PERIOD))
+    return found
+
+
+def measured(count: int, points: int, lines: int, runs: int) -> dict[str, Any]:
+    """Median seconds of a diagnosis with `count` effects."""
+    wall, processor = [], []
+    for run in range(runs):
+        for hidden in HIDDEN:
+            batches = gather(records(points, lines, hidden, np.random.default_rng(run)))
+            library = effects(_Points(np.repeat(np.linspace(-1, 1, points), 2)))
+            chosen = [*(e for e in library if e.kind in ("delay", "quadratic_sensor")), *library][: count + 2]
+            chosen = list({one.kind: one for one in chosen}.values())[:count]
+            start, used = perf_counter(), process_time()
+            diagnose(MODEL, batches, chosen, seed=run)
+            wall.append(perf_counter() - start)
+            processor.append(process_time() - used)
+    return {
+        "effects": count,
+        "records": 2 * points,
+        "lines": lines,
+        "median seconds": float(np.median(wall)),
+        "median processor seconds": float(np.median(processor)),
+        "95 % of seconds": float(np.quantile(wall, 0.95)),
+    }
+
+
+def main() -> None:
+    """Parses the command line, runs, prints."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--runs", type=int, default=3)
+    parser.add_argument("--output", type=Path, default=None)
+    options = parser.parse_args()
+    table = []
+    for case in CASES:
+        table.append(measured(*case, options.runs))
+        print("  ".join(f"{name} {value:.3g}" for name, value in table[-1].items()), flush=True)
+    if options.output is not None:
+        options.output.write_text(json.dumps(table, indent=1) + "\n")
+
+
+if __name__ == "__main__":
+    main()

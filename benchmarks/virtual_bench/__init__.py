@@ -1,0 +1,1 @@
+"""A test bench whose plants hide effects; its integration and noise share nothing with the models of the project."""

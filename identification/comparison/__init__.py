@@ -1,0 +1,1 @@
+"""Model against measurement: residuals of known distribution, where they are too large, and tests of that."""

@@ -1,0 +1,114 @@
+"""Measurements on a common frequency grid, ready to be compared with a model line by line."""
+
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from identification.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+
+EXCITED, ODD, EVEN = 0, 1, 2
+CLASS_NAMES = ("excited", "unexcited odd", "unexcited even")
+
+
+@dataclass(frozen=True, eq=False)
+class Batch:
+    """M measurements with the same K lines: mean spectra over the steady periods, or frequency responses (U = 1).
+
+        x(t) = Σ_k X_k e^{jω_k t},   so that X = rfft(x)/L for a period of L samples;   r = √2 (Re, Im)(Y − Ŷ)/σ
+
+    `points` (M, s); `omega` (K,) rad/s; `inputs`, `outputs` (M, K) in the units of the plant; `variances` (M, K)
+    E|n|² of the noise on `outputs` (twice that of the real number at ω = 0 and the Nyquist frequency), infinite for
+    lines that are not compared; `classes` (M, K) of EXCITED, ODD, EVEN; `freedom` (K,) real degrees of freedom of
+    each σ̂², `raw_freedom` those that one line brings by itself (infinite where σ is known exactly); `half_width`
+    lines to each side were pooled. `signals` (M, L) the input over one period, None for frequency responses.
+    `scaled`: False when only the ratios of the variances are known. `members`: places in the user's list.
+    """
+
+    points: FloatArray
+    omega: FloatArray
+    inputs: ComplexArray
+    outputs: ComplexArray
+    variances: FloatArray
+    classes: IntArray
+    members: IntArray
+    signals: FloatArray | None = None
+    sample_time: float | None = None
+    freedom: float = np.inf
+    raw_freedom: float = np.inf
+    half_width: int = 0
+    scaled: bool = True
+    between: tuple[FloatArray, ...] = field(default=())
+
+    @cached_property
+    def real(self) -> BoolArray:
+        """Which of the lines (K,) hold one real number only."""
+        at_nyquist = np.zeros(len(self.omega), dtype=np.bool_)
+        if self.sample_time is not None:
+            at_nyquist = abs(self.omega * self.sample_time / np.pi - 1) < 1e-9
+        return np.asarray((self.omega == 0) | at_nyquist)
+
+    @cached_property
+    def weights(self) -> FloatArray:
+        """√2/σ (M, K), less what the randomness of σ̂ adds to the mean of r²: E r² = 1."""
+        inflation = 1.0 if np.isinf(self.freedom) else self.freedom / (self.freedom - 2)
+        return np.sqrt(2 / (self.variances * inflation))
+
+    @cached_property
+    def weights_of_rows(self) -> FloatArray:
+        """The weights of real and imaginary parts, (M, 2, K); the imaginary part of a real line has none."""
+        imaginary = np.where(self.real, 0.0, self.weights)
+        return np.stack([self.weights, imaginary], axis=1)
+
+    @cached_property
+    def compared(self) -> BoolArray:
+        """Which rows of the whitened residual carry information, (M·2·K,)."""
+        return np.asarray(self.weights_of_rows.ravel() > 0)
+
+    @property
+    def row_count(self) -> int:
+        """How many real numbers are compared."""
+        return int(self.compared.sum())
+
+    @property
+    def independent_freedom(self) -> float:
+        """Real degrees of freedom of all the noise variances together."""
+        return float(self.raw_freedom * np.isfinite(self.variances).sum())
+
+    def whiten(self, spectra: ComplexArray) -> FloatArray:
+        """Spectra (…, M, K) as rows of unit variance (…, M·2·K): real parts, then imaginary parts, of each record."""
+        rows = np.empty((*spectra.shape[:-1], 2, spectra.shape[-1]))
+        rows[..., 0, :] = spectra.real
+        rows[..., 1, :] = spectra.imag
+        rows *= self.weights_of_rows
+        return rows.reshape(*spectra.shape[:-2], -1)
+
+    @cached_property
+    def measured(self) -> FloatArray:
+        """The whitened measurement, (M·2·K,)."""
+        return self.whiten(self.outputs)
+
+    def complex_residual(self, rows: FloatArray) -> ComplexArray:
+        """Whitened rows (M·2·K,) as complex numbers (M, K) with E|z|² = 1 (at real lines 1 for the real part)."""
+        parts = rows.reshape(len(self.points), 2, len(self.omega))
+        scale = np.where(self.real, 1.0, np.sqrt(0.5))
+        return np.asarray(scale * (parts[:, 0] + 1j * parts[:, 1]))
+
+    def spectrum(self, signals: FloatArray) -> ComplexArray:
+        """Lines (…, K) of signals (…, L·n) over one period."""
+        lines = np.fft.rfft(signals)[..., : len(self.omega)]
+        return np.asarray(lines / signals.shape[-1])
+
+    def signal(self, spectra: ComplexArray, finer: int = 1) -> FloatArray:
+        """One period (…, L·`finer`) of signals with lines (…, K), the time grid finer by that factor."""
+        assert self.signals is not None
+        length = self.signals.shape[-1] * finer
+        if finer > 1:
+            spectra = spectra * np.where(self.real & (self.omega > 0), 0.5, 1.0)
+        return np.asarray(np.fft.irfft(spectra * length, n=length))
+
+    @property
+    def band(self) -> tuple[float, float]:
+        """Lowest and highest excited frequency above zero, rad/s."""
+        excited = self.omega[np.any((self.classes == EXCITED) & np.isfinite(self.variances), axis=0) & (self.omega > 0)]
+        return float(excited.min()), float(excited.max())

@@ -1,0 +1,244 @@
+"""A model held against measurements: maps of normalised residuals, tests by place, fit in per cent."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from scipy.special import fdtrc
+
+from identification.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from identification.comparison.batch import CLASS_NAMES, EXCITED, Batch
+from identification.comparison.between import strongest_line
+from identification.comparison.lack_of_fit import lack_of_fit
+from identification.errors import MisuseError
+from identification.extension.fit import Fit, fit
+from identification.extension.model import ExtendedModel, require_matching
+from identification.extension.rows import Rows, effect_tangents, plant_tangents
+from identification.outcome import TestResult
+from identification.places.place import Flow
+from identification.whiteness import orthonormal
+
+BANDS = 6
+
+
+@dataclass(frozen=True, eq=False)
+class MisfitMap:
+    """Normalised residuals z (M, K) of one grid, E|z|² = 1 when nothing is missing; NaN-free: `compared` says where.
+
+    `points` (M, s), `frequencies` (K,) rad/s, `classes` (M, K) as in `identification.comparison.batch`.
+    """
+
+    points: FloatArray
+    frequencies: FloatArray
+    residual: ComplexArray
+    compared: BoolArray
+    classes: IntArray
+    members: IntArray
+
+
+@dataclass(frozen=True, eq=False)
+class Comparison:
+    """What a comparison found: maps; tests overall, by operating point, by band and by line class; fit of each record.
+
+    `tests` are empty where the size of the noise is not known. `dependence` and `dynamics` split the lack of fit: the
+    first asks whether one LTI model per operating point would fit better than the dependence on p, the second whether
+    even those do not fit. `fit_percent` (experiments,) 100 (1 − ‖y − ŷ‖/‖y − ȳ‖) at the excited lines.
+    """
+
+    maps: tuple[MisfitMap, ...]
+    overall: TestResult | None
+    by_point: tuple[TestResult, ...]
+    by_band: tuple[TestResult, ...]
+    by_class: tuple[TestResult, ...]
+    dependence: TestResult | None
+    dynamics: TestResult | None
+    between: tuple[TestResult, ...]
+    fit_percent: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class _Judge:
+    """Sums of squares of selected rows and what they are worth, for data that were fitted or that were held out."""
+
+    rows: Rows
+    residual: FloatArray
+    tangents: FloatArray
+    covariance: FloatArray | None
+    compared: BoolArray
+    leverage: FloatArray
+
+    def test(self, name: str, chosen: BoolArray) -> TestResult:
+        """Lack of fit of the chosen rows (R,)."""
+        chosen = chosen & self.compared
+        residual, count = self.residual[chosen], float(chosen.sum())
+        energy, freedom = float(residual @ residual), count - float(self.leverage[chosen].sum())
+        if self.covariance is not None:
+            tangents = self.tangents[:, chosen]
+            projected = tangents @ residual
+            inside = np.linalg.inv(self.covariance) + tangents @ tangents.T
+            energy -= float(projected @ np.linalg.solve(inside, projected))
+        return lack_of_fit(name, energy, freedom, self._noise_freedom(chosen))
+
+    def _noise_freedom(self, chosen: BoolArray) -> float:
+        parts = zip(self.rows.batches, self.rows.parts(chosen.astype(np.float64)), strict=True)
+        return sum(batch.raw_freedom * float(part.sum()) / 2 for batch, part in parts)
+
+
+def compare(model: ExtendedModel, batches: Sequence[Batch], fitted: bool = True) -> Comparison:
+    """Hold a model against batches of measurements.
+
+    `fitted`: the model was fitted to these very data; it is then fitted once more with the weights used here, and the
+    fitted parameters are taken off the degrees of freedom. Otherwise the model's own uncertainty is added to that of
+    the noise: r has the covariance I + J P Jᵀ. Raises MisuseError for a model without (finite) covariance then.
+    """
+    require_matching(model.base, batches)
+    rows = Rows(tuple(batches))
+    flows, judge = _fitted(fit(model, rows)) if fitted else _held_out(model, rows)
+    z = judge.residual
+    if judge.covariance is not None:
+        z = z / np.sqrt(1 + np.einsum("kr,kl,lr->r", judge.tangents, judge.covariance, judge.tangents))
+    maps = tuple(_map(batch, part) for batch, part in zip(batches, rows.parts(z), strict=True))
+    percent = _fit_percent(batches, flows)
+    between = tuple(strongest_line(powers) for batch in batches for powers in batch.between)
+    if not rows.scaled:
+        return Comparison(maps, None, (), (), (), None, None, between, percent)
+    everything = np.ones(len(z), dtype=np.bool_)
+    overall = judge.test("lack of fit", everything)
+    dependence, dynamics = _split(rows, flows, judge, overall)
+    return Comparison(
+        maps,
+        overall,
+        tuple(judge.test(name, chosen) for name, chosen in _points(rows)),
+        tuple(judge.test(name, chosen) for name, chosen in _bands(rows)),
+        tuple(judge.test(name, chosen) for name, chosen in _classes(rows)),
+        dependence,
+        dynamics,
+        between,
+        percent,
+    )
+
+
+def _compared(rows: Rows) -> BoolArray:
+    return np.concatenate([batch.compared for batch in rows.batches])
+
+
+def _fitted(found: Fit) -> tuple[tuple[Flow, ...], _Judge]:
+    leverage = np.sum(orthonormal(found.tangents.T) ** 2, axis=1)
+    return found.flows, _Judge(found.rows, found.residual, found.tangents, None, _compared(found.rows), leverage)
+
+
+def _held_out(model: ExtendedModel, rows: Rows) -> tuple[tuple[Flow, ...], _Judge]:
+    flows = tuple(model.respond(batch) for batch in rows.batches)
+    tangents = [plant_tangents(model, rows, flows), *(effect_tangents(one, rows, flows) for one in model.effects)]
+    covariance = _covariance(model)
+    start = model.base.plant_size
+    for one in model.effects:
+        stop = start + len(one.parameters())
+        covariance[start + one.size : stop] /= one.effect.values()[:, None]
+        covariance[:, start + one.size : stop] /= one.effect.values()
+        start = stop
+    residual = rows.residual(flows)
+    nothing = np.zeros(len(residual))
+    return flows, _Judge(rows, residual, np.concatenate(tangents), covariance, _compared(rows), nothing)
+
+
+def _covariance(model: ExtendedModel) -> FloatArray:
+    size = model.base.plant_size
+    found = model.covariance
+    if found is None and not model.effects:
+        found = model.base.covariance[:size, :size]
+    if found is None or not np.all(np.isfinite(found)):
+        raise MisuseError("the model has no covariance; fit it to data first, or state its covariance", "model")
+    return np.array(found)
+
+
+def _map(batch: Batch, rows: FloatArray) -> MisfitMap:
+    compared = np.isfinite(batch.variances)
+    return MisfitMap(batch.points, batch.omega, batch.complex_residual(rows), compared, batch.classes, batch.members)
+
+
+def _fit_percent(batches: Sequence[Batch], flows: Sequence[Flow]) -> FloatArray:
+    percent = np.empty(sum(len(batch.members) for batch in batches))
+    for batch, flow in zip(batches, flows, strict=True):
+        used = (batch.classes == EXCITED) & np.isfinite(batch.variances)
+        error = np.sum(abs(batch.outputs - flow.output) ** 2 * used, axis=1)
+        size = np.sum(abs(batch.outputs) ** 2 * used, axis=1)
+        percent[batch.members] = 100 * (1 - np.sqrt(error / size))
+    return percent
+
+
+def _spread(rows: Rows, chosen: Sequence[BoolArray]) -> BoolArray:
+    """Choices of lines (M, K), one a batch, as a choice of rows (R,)."""
+    return np.concatenate([np.repeat(one[:, None, :], 2, axis=1).ravel() for one in chosen])
+
+
+def _points(rows: Rows) -> list[tuple[str, BoolArray]]:
+    every = np.unique(np.concatenate([batch.points for batch in rows.batches]), axis=0)
+    found = []
+    for point in every:
+        chosen = [np.repeat(np.all(b.points == point, axis=1)[:, None], len(b.omega), axis=1) for b in rows.batches]
+        found.append((f"p = {', '.join(f'{value:g}' for value in point)}", _spread(rows, chosen)))
+    return found
+
+
+def bands(batches: Sequence[Batch]) -> list[tuple[float, float]]:
+    """Ends, rad/s, of bands of equal ratio over the excited frequencies, and of what lies below (−1) and above (∞)."""
+    ends = np.array([batch.band for batch in batches])
+    inner = np.geomspace(ends[:, 0].min() * (1 - 1e-9), ends[:, 1].max() * (1 + 1e-9), BANDS + 1)
+    edges = np.concatenate([[-1.0], inner, [np.inf]])
+    return [(float(low), float(high)) for low, high in pairwise(edges) if any(_holds(b, low, high) for b in batches)]
+
+
+def _holds(batch: Batch, low: float, high: float) -> bool:
+    return bool(np.any(np.isfinite(batch.variances[:, (batch.omega > low) & (batch.omega <= high)])))
+
+
+def _bands(rows: Rows) -> list[tuple[str, BoolArray]]:
+    found = []
+    for low, high in bands(rows.batches):
+        chosen = [np.repeat(((b.omega > low) & (b.omega <= high))[None], len(b.points), axis=0) for b in rows.batches]
+        found.append((f"{max(low, 0.0):.4g} … {high:.4g} rad/s", _spread(rows, chosen)))
+    return found
+
+
+def _classes(rows: Rows) -> list[tuple[str, BoolArray]]:
+    found = []
+    for number, name in enumerate(CLASS_NAMES):
+        chosen = _spread(rows, [batch.classes == number for batch in rows.batches])
+        if np.any(chosen & _compared(rows)):
+            found.append((name, chosen))
+    return found
+
+
+def _split(
+    rows: Rows, flows: Sequence[Flow], judge: _Judge, overall: TestResult
+) -> tuple[TestResult | None, TestResult | None]:
+    """Likelihood ratio of one LTI model per operating point against the LPV model, to second order of the likelihood.
+
+    Σ_m ‖Q_mᵀ r_m‖² ~ χ²(Σ rank J_m − k),  the rest ~ χ²(R − Σ rank J_m)      [Ghosh2018, Remark 3]
+    """
+    if judge.covariance is not None:
+        return None, None
+    explained, ranks = 0.0, 0
+    local = rows.whiten([np.swapaxes(f.gradient * (f.drive * f.factor)[:, None, :], 0, 1) for f in flows])
+    for _, chosen in _points(rows):
+        basis = orthonormal(local[:, chosen].T)
+        explained += float(np.sum((basis.T @ judge.residual[chosen]) ** 2))
+        ranks += basis.shape[1]
+    noise = sum(batch.independent_freedom for batch in rows.batches)
+    freedom = ranks - rows_rank(judge)
+    left = lack_of_fit("one LTI model per operating point", overall.statistic - explained, rows.count - ranks, noise)
+    name = "dependence on the operating point"
+    if freedom < 1:
+        return TestResult(name, 0.0, 0.0, 1.0), left
+    p = lack_of_fit(name, explained, freedom, noise).p_value
+    if left.degrees_of_freedom > 0 and left.p_value < 0.01:
+        ratio = explained / freedom / (left.statistic / left.degrees_of_freedom)
+        p = float(fdtrc(freedom, left.degrees_of_freedom, ratio))
+    return TestResult(name, explained, float(freedom), p), left
+
+
+def rows_rank(judge: _Judge) -> int:
+    """How many directions the fitted parameters take up."""
+    return round(float(judge.leverage.sum()))

@@ -1,0 +1,162 @@
+"""From records and frequency responses to batches of spectra with the variances of their noise."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.ndimage import uniform_filter1d
+
+from identification.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from identification.comparison.batch import EVEN, EXCITED, ODD, Batch
+from identification.errors import MisuseError
+from identification.response_tests import real_lines
+from identification.signals import FrequencyResponse, Measurement, TimeRecord
+from identification.spectral.local_polynomial import LocalPolynomial
+from identification.spectral.periodic_average import PeriodicAverage, excited_lines
+
+NEIGHBOURS = 7
+
+
+def gather(experiments: Sequence[Measurement], mean_value: bool = True) -> tuple[Batch, ...]:
+    """Batches of the experiments, those on the same grid together, in the order in which the grids first occur.
+
+    Periodic records give their mean spectrum at all lines of the period, excited or not, with the variance from how
+    the periods differ, pooled over the seven lines to each side; other records the frequency response that the local
+    polynomial method finds. `mean_value` keeps the line at ω = 0 of periodic records.
+    """
+    if not experiments:
+        raise MisuseError("there is nothing to compare with; give at least one experiment", "experiments")
+    parts = [_one(m, data, mean_value) for m, data in enumerate(experiments)]
+    groups: dict[object, list[Batch]] = {}
+    for part in parts:
+        groups.setdefault(_grid(part), []).append(part)
+    return tuple(_joined(group) for group in groups.values())
+
+
+def _grid(part: Batch) -> object:
+    return (part.signals is None, part.scaled, part.freedom, part.raw_freedom, part.omega.tobytes())
+
+
+def _joined(group: list[Batch]) -> Batch:
+    first = group[0]
+    stacked = {
+        name: np.concatenate([getattr(part, name) for part in group])
+        for name in ("points", "inputs", "outputs", "variances", "classes", "members")
+    }
+    signals = None if first.signals is None else np.concatenate([p.signals for p in group if p.signals is not None])
+    between = tuple(b for part in group for b in part.between)
+    return Batch(
+        omega=first.omega,
+        signals=signals,
+        sample_time=first.sample_time,
+        freedom=first.freedom,
+        raw_freedom=first.raw_freedom,
+        half_width=first.half_width,
+        scaled=first.scaled,
+        between=between,
+        **stacked,
+    )
+
+
+def _one(m: int, data: Measurement, mean_value: bool) -> Batch:
+    if isinstance(data, FrequencyResponse):
+        return _of_response(m, data)
+    if data.period is None or data.period_count < 2:
+        return _of_response(m, LocalPolynomial().estimate(data))
+    return _of_periodic(m, data, mean_value)
+
+
+def _of_response(m: int, data: FrequencyResponse) -> Batch:
+    """A frequency response without variances is weighted by its own size; the scale of the errors is then not known."""
+    known = data.variance is not None
+    variance = data.variance if data.variance is not None else abs(data.response) ** 2
+    freedom = np.inf if data.variance_degrees_of_freedom is None else 2 * data.variance_degrees_of_freedom
+    if known and freedom <= 4:
+        raise MisuseError(
+            f"the variances come from {freedom / 2:g} degrees of freedom, too few to weigh with; measure at least"
+            " four periods or give the records themselves",
+            "experiments",
+        )
+    if np.any(variance == 0):
+        raise MisuseError("a response is zero and has no variance; state the variances", "experiments")
+    one = np.ones((1, len(data)))
+    order = np.argsort(data.frequencies)
+    return Batch(
+        points=np.array([data.operating_point], dtype=np.float64),
+        omega=data.frequencies[order],
+        inputs=one.astype(np.complex128),
+        outputs=data.response[None, order],
+        variances=np.asarray(variance[None, order], dtype=np.float64),
+        classes=np.full((1, len(data)), EXCITED),
+        members=np.array([m]),
+        sample_time=data.sample_time,
+        freedom=freedom,
+        raw_freedom=freedom,
+        scaled=known,
+    )
+
+
+def _of_periodic(m: int, record: TimeRecord, mean_value: bool) -> Batch:
+    period = record.period
+    assert period is not None
+    estimator = PeriodicAverage()
+    u, y = (spectra / period for spectra in estimator.steady_spectra(record))
+    count = len(y)
+    excited = excited_lines(u, estimator.threshold)
+    omega = np.asarray(2 * np.pi * np.fft.rfftfreq(period, record.sample_time), dtype=np.float64)
+    variances, freedom, half_width = _noise(u, y, excited, real_lines(omega, record.sample_time))
+    if not mean_value:
+        variances[0] = np.inf
+    mean_input = np.where(excited, u.mean(axis=0), 0.0)
+    return Batch(
+        points=np.array([record.operating_point], dtype=np.float64),
+        omega=omega,
+        inputs=mean_input[None],
+        outputs=y.mean(axis=0)[None],
+        variances=np.asarray(variances[None], dtype=np.float64),
+        classes=_classes(excited)[None],
+        members=np.array([m]),
+        signals=np.fft.irfft(mean_input * period, n=period)[None],
+        sample_time=record.sample_time,
+        freedom=freedom,
+        raw_freedom=2.0 * (count - 1),
+        half_width=half_width,
+        between=(between_harmonics(record, count),),
+    )
+
+
+def _noise(u: ComplexArray, y: ComplexArray, excited: BoolArray, real: BoolArray) -> tuple[FloatArray, float, int]:
+    """Variance of the mean spectrum at each line, the real degrees of freedom it has, and the lines pooled each side.
+
+        σ̂_k² = mean over |k' − k| ≤ w of Σ_p |E_k'p − Ē_k'|² / (P(P − 1)),   E = Y − Ĝ U;   2(P − 1)(2w + 1) degrees
+
+    [PintelonSchoukens2012, Section 2.5]; noise on the input counts where the input is excited.
+    """
+    count, lines = y.shape
+    ratio = np.where(excited, y.mean(axis=0) / np.where(excited, u.mean(axis=0), 1.0), 0.0)
+    errors = y - ratio * u
+    power = np.var(errors, axis=0, ddof=1) / count
+    power[0] = power[1]
+    if real[-1]:
+        power[-1] = power[-2]
+    half_width = min(NEIGHBOURS, (lines - 1) // 2)
+    pooled = uniform_filter1d(power, 2 * half_width + 1, mode="reflect")
+    smallest = 1e-26 * float(np.mean(abs(y) ** 2)) + float(np.finfo(np.float64).tiny)
+    variance = np.asarray(np.maximum(pooled, smallest) * np.where(real, 2.0, 1.0), dtype=np.float64)
+    return variance, 2.0 * (count - 1) * (2 * half_width + 1), half_width
+
+
+def _classes(excited: BoolArray) -> IntArray:
+    parity = np.where(np.arange(len(excited)) % 2 == 1, ODD, EVEN)
+    return np.where(excited, EXCITED, parity)
+
+
+def between_harmonics(record: TimeRecord, count: int) -> FloatArray:
+    """Power of the output between the harmonics, (lines,): what does not repeat from period to period.
+
+    The last `count` periods are transformed together; of every `count` lines the one that is a harmonic is left out.
+    """
+    assert record.period is not None
+    first = (record.period_count - count) * record.period
+    signal = record.output[first : first + count * record.period]
+    lines = abs(np.fft.rfft(signal) / len(signal)) ** 2
+    return np.asarray(lines[np.arange(len(lines)) % count != 0])

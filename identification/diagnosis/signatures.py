@@ -1,0 +1,116 @@
+"""What every effect would change, whitened, and cleared of what the fitted parameters can do."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from identification.arrays import FloatArray
+from identification.comparison.batch import Batch
+from identification.extension.fit import Fit
+from identification.extension.model import PlacedEffect, placed
+from identification.extension.rows import effect_tangents
+from identification.places.place import Effect
+from identification.whiteness import orthonormal
+
+INVISIBLE = 1e-4
+
+
+@dataclass(frozen=True, eq=False)
+class Signature:
+    """One variant of an effect: `basis` (c, R) orthonormal and orthogonal to the tangents of the fitted parameters.
+
+    `gain` (c, c): basisᵀ(projected change) for amplitudes of one, so that e ≈ gain⁻¹ basis r; `kept`: the share of the
+    length of the change that the projection leaves; `freedom`: real degrees of freedom of the noise variance that the
+    signature meets.
+    """
+
+    placed: PlacedEffect
+    basis: FloatArray
+    gain: FloatArray
+    kept: float
+    freedom: float
+
+    def amplitudes(self, residual: FloatArray) -> FloatArray:
+        """The amplitude coefficients (c,) that the residual (R,) points to, to first order."""
+        return np.asarray(np.linalg.lstsq(self.gain, self.basis @ residual, rcond=1e-12)[0])
+
+
+@dataclass(frozen=True, eq=False)
+class Candidate:
+    """An effect with the variants that this experiment shows; `why_not` says so when it shows none."""
+
+    effect: Effect
+    signatures: tuple[Signature, ...]
+    looked_at: int = 1
+    why_not: str = ""
+
+
+def tangent_space(fit: Fit) -> FloatArray:
+    """An orthonormal basis (k, R) of what the fitted parameters can change."""
+    return np.ascontiguousarray(orthonormal(fit.tangents.T).T)
+
+
+def candidates(fit: Fit, effects: Sequence[Effect], degree: int = 0) -> tuple[Candidate, ...]:
+    """The effects with their signatures at the fit; amplitudes are polynomials of this degree in p."""
+    space = tangent_space(fit)
+    return tuple(_candidate(fit, effect, degree, space) for effect in effects)
+
+
+def _candidate(fit: Fit, effect: Effect, degree: int, space: FloatArray) -> Candidate:
+    if not all(effect.judgeable(flow) for flow in fit.flows):
+        return Candidate(effect, (), why_not="these data cannot show it: it needs periodic records or logged values")
+    variables = fit.flows[0].setting.points.shape[1]
+    variants = [placed(one, degree, variables) for one in _variants(fit, effect)]
+    if not variants:
+        return Candidate(effect, (), why_not="nothing in this experiment to look at")
+    changes = _changes(fit, variants)
+    projected = changes - (changes @ space.T) @ space
+    count = len(changes) // len(variants)
+    pieces = [slice(i * count, (i + 1) * count) for i in range(len(variants))]
+    found = [_signature(fit, one, changes[p], projected[p]) for one, p in zip(variants, pieces, strict=True)]
+    seen = tuple(one for one in found if one is not None)
+    why = "" if seen else "invisible in this experiment: the fitted parameters take up all that it changes"
+    return Candidate(effect, seen, effect.looked_at(fit.flows[0]), why)
+
+
+def _variants(fit: Fit, effect: Effect) -> list[Effect]:
+    if effect.parameters:
+        return list(effect.variants(fit.flows[0]))
+    return list(dict.fromkeys(one for flow in fit.flows for one in effect.variants(flow)))
+
+
+def _changes(fit: Fit, variants: Sequence[PlacedEffect]) -> FloatArray:
+    """The whitened changes by the amplitudes of all variants, (variants · c, R)."""
+    every = [effect_tangents(one, fit.rows, fit.flows, further=False) for one in variants]
+    return np.concatenate(every)
+
+
+def _signature(fit: Fit, one: PlacedEffect, changes: FloatArray, projected: FloatArray) -> Signature | None:
+    before, after = np.linalg.norm(changes, axis=1), np.linalg.norm(projected, axis=1)
+    if not np.all(np.isfinite(before)) or before.max() == 0 or after.max() <= INVISIBLE * before.max():
+        return None
+    several = len(projected) > 1
+    basis = np.ascontiguousarray(orthonormal(projected.T).T) if several else projected / after[:, None]
+    weight = np.sum(basis**2, axis=0) / len(basis)
+    freedom = noise_freedom(fit.rows.batches, fit.rows.parts(weight))
+    return Signature(one, basis, basis @ projected.T, float(after.max() / before.max()), freedom)
+
+
+def noise_freedom(batches: Sequence[Batch], weights: Sequence[FloatArray]) -> float:
+    """Degrees of freedom ν of Σ w_i r_i², w ≥ 0 of sum one, as far as the noise variances are random.
+
+        2/ν = var Σ_k w_k δ_k = Σ_k (w ∗ window)_k² 2/ν₁,   δ_k the mean of the relative errors in the window of line k
+
+    ν₁ are the degrees of freedom that each line brings; infinite when the variances are known.
+    """
+    total = 0.0
+    for batch, weight in zip(batches, weights, strict=True):
+        if np.isinf(batch.raw_freedom):
+            continue
+        lines = weight.reshape(len(batch.points), 2, -1).sum(axis=1)
+        width = 2 * batch.half_width + 1
+        sums = np.cumsum(np.pad(lines, ((0, 0), (batch.half_width + 1, batch.half_width))), axis=1)
+        smoothed = (sums[:, width:] - sums[:, :-width]) / width
+        total += float(np.sum(smoothed**2)) / batch.raw_freedom
+    return 1 / total if total > 0 else np.inf

@@ -1,0 +1,29 @@
+"""Rate-independent hysteresis."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from identification.arrays import FloatArray
+from identification.places.memory import dahl
+from identification.places.nonlinear import Feedback
+from identification.places.place import FurtherParameter
+
+
+@dataclass(frozen=True)
+class Hysteresis(Feedback):
+    """f = e z, dz = (dx − |dx| z)/δ, δ = `travel`: Bouc–Wen with n = 1 and γ = 0, Dahl friction [Wen1976, (3)]."""
+
+    kind: ClassVar[str] = "hysteresis"
+    title: ClassVar[str] = "hysteresis (Bouc–Wen)"
+    domain: ClassVar[str] = "mechanical"
+    unit: ClassVar[str] = "input unit"
+    source: ClassVar[str] = "[Wen1976, (3)]"
+    oversampling: ClassVar[int] = 8
+    sign: ClassVar[int] = 1
+    parameters: ClassVar[tuple[FurtherParameter, ...]] = (FurtherParameter("travel", "output", (0.05, 0.15, 0.4, 1.0)),)
+
+    travel: float = 1.0
+
+    def force(self, x: FloatArray, velocity: FloatArray) -> FloatArray:
+        """z."""
+        return dahl(x, self.travel)

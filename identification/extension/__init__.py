@@ -1,0 +1,1 @@
+"""Models with physical effects in them, and the estimation of θ and effects together."""

@@ -1,0 +1,90 @@
+"""Residuals and tangents of a model over several batches, whitened."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from identification.arrays import ComplexArray, FloatArray
+from identification.comparison.batch import Batch
+from identification.extension.model import ExtendedModel, PlacedEffect, amplitude_basis
+from identification.places.place import Effect, Flow
+
+FURTHER_STEP = 1e-4
+
+
+@dataclass(frozen=True, eq=False)
+class Rows:
+    """Several batches as one vector of R whitened numbers; `scales`: by what the errors of each batch are
+    larger than stated, one unless given."""
+
+    batches: tuple[Batch, ...]
+    scales: tuple[float, ...] = ()
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "scales", self.scales or (1.0,) * len(self.batches))
+
+    def residual(self, flows: Sequence[Flow]) -> FloatArray:
+        """(Y − Ŷ)/σ as rows, (R,)."""
+        parts = zip(self.batches, flows, self.scales, strict=True)
+        return np.concatenate([(batch.measured - batch.whiten(flow.output)) / scale for batch, flow, scale in parts])
+
+    def whiten(self, spectra: Sequence[ComplexArray]) -> FloatArray:
+        """Changes of the output (c, M, K), one array a batch, as (c, R)."""
+        parts = zip(self.batches, spectra, self.scales, strict=True)
+        return np.concatenate([batch.whiten(lines) / scale for batch, lines, scale in parts], axis=-1)
+
+    def parts(self, rows: FloatArray) -> list[FloatArray]:
+        """The rows (…, R) of each batch."""
+        ends = np.cumsum([len(batch.compared) for batch in self.batches])[:-1]
+        return np.split(rows, ends, axis=-1)
+
+    @property
+    def count(self) -> int:
+        """How many real numbers are compared."""
+        return sum(batch.row_count for batch in self.batches)
+
+    @property
+    def scaled(self) -> bool:
+        """Whether the size of the noise is known for all batches."""
+        return all(batch.scaled for batch in self.batches)
+
+
+def plant_tangents(model: ExtendedModel, rows: Rows, flows: Sequence[Flow]) -> FloatArray:
+    """∂Ŷ/∂θ_G whitened, (k_G, R)."""
+    k, n = model.base.plant_size, model.base.structure.n_plant
+    spectra = []
+    for flow in flows:
+        change = np.swapaxes(flow.setting.transfer[:, :n, :k], 1, 2) @ flow.gradient
+        spectra.append(np.swapaxes(change * (flow.drive * flow.factor)[:, None, :], 0, 1))
+    return rows.whiten(spectra)
+
+
+def effect_tangents(one: PlacedEffect, rows: Rows, flows: Sequence[Flow], further: bool = True) -> FloatArray:
+    """∂Ŷ by the amplitudes of an effect, and with `further` by its other parameters, whitened, (parameters, R)."""
+    amplitudes = [_by_amplitudes(one.effect, one, flow) for flow in flows]
+    others = [_by_further(one, name, flows) for name in one.effect.fitted_names()] if further else []
+    spectra = [np.concatenate([part, *(column[b] for column in others)]) for b, part in enumerate(amplitudes)]
+    return rows.whiten(spectra)
+
+
+def _by_amplitudes(effect: Effect, one: PlacedEffect, flow: Flow) -> ComplexArray:
+    basis = amplitude_basis(effect, one.degree, flow.setting, flow.batch)
+    tangent = effect.tangent(one.amplitude(flow.setting, flow.batch), flow)
+    columns = tangent[:, None] * basis.T[None, :, :, None]
+    return np.asarray(columns.reshape(-1, *tangent.shape[1:]))
+
+
+def _by_further(one: PlacedEffect, name: str, flows: Sequence[Flow]) -> list[ComplexArray]:
+    """∂Ŷ/∂ ln η, (1, M, K) a batch: Σ c_ij ∂t_ij/∂ ln η, as all effects with further parameters are linear in e."""
+    names = one.effect.fitted_names()
+    values = one.effect.values()
+    changed = []
+    for sign in (1, -1):
+        moved = np.where(np.array(names) == name, values * np.exp(sign * FURTHER_STEP), values)
+        effect = one.effect.with_values(moved)
+        changed.append([_by_amplitudes(effect, one, flow) for flow in flows])
+    weights = one.coefficients.ravel()
+    return [
+        np.tensordot(weights, (up - down) / (2 * FURTHER_STEP), axes=1)[None] for up, down in zip(*changed, strict=True)
+    ]

@@ -1,0 +1,98 @@
+"""Effects that act on the linear response.
+
+On the coefficients, on the axis of frequencies, as factor, in parallel.
+"""
+
+from abc import abstractmethod
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from identification.arrays import ComplexArray, FloatArray
+from identification.models import RationalStructure
+from identification.places.place import Effect, Flow, Setting
+
+STEP = 1e-4
+
+
+@dataclass(frozen=True)
+class Factor(Effect):
+    """Multiplies the response of the plant: Y = (1 + e s(ω)) G U, or another factor that is 1 at e = 0."""
+
+    place: ClassVar[str] = "multiplies the linear response"
+
+    @abstractmethod
+    def shape(self, omega: FloatArray) -> ComplexArray:
+        """s(ω) (K,): the derivative of the factor by e at e = 0."""
+
+    def factor(self, e: FloatArray, omega: FloatArray) -> ComplexArray:
+        """The factor (…, K) for e (…, 1)."""
+        return np.asarray(1 + e * self.shape(omega))
+
+    def slope(self, e: FloatArray, omega: FloatArray) -> ComplexArray:
+        """∂factor/∂e (…, K)."""
+        return np.broadcast_to(self.shape(omega), (*e.shape[:-1], len(omega)))
+
+    def tangent(self, e: FloatArray, flow: Flow) -> ComplexArray:
+        """∂Y/∂e (1, M, K)."""
+        column, omega = e[0][:, None], flow.batch.omega
+        relative = self.slope(column, omega) / self.factor(column, omega)
+        return np.asarray((relative * flow.core * flow.factor)[None])
+
+
+@dataclass(frozen=True)
+class Parallel(Effect):
+    """Adds to the response of the plant: Y = (G + e s(ω)) U."""
+
+    place: ClassVar[str] = "added to the linear response"
+
+    @abstractmethod
+    def shape(self, omega: FloatArray) -> ComplexArray:
+        """s(ω) (K,), or (shapes, K) for several amplitudes."""
+
+    def response(self, e: FloatArray, omega: FloatArray) -> ComplexArray:
+        """Σ e_i s_i(ω) (M, K) for e (shapes, M)."""
+        return np.asarray(e.T @ np.atleast_2d(self.shape(omega)))
+
+    def tangent(self, e: FloatArray, flow: Flow) -> ComplexArray:
+        """∂Y/∂e (shapes, M, K)."""
+        return np.asarray(np.atleast_2d(self.shape(flow.batch.omega))[:, None, :] * flow.drive)
+
+
+@dataclass(frozen=True)
+class FrequencyAxis(Effect):
+    """The plant answers as if all frequencies were (1 + e) times as high: Y = G((1 + e) ω) U."""
+
+    place: ClassVar[str] = "axis of frequencies"
+
+    def tangent(self, e: FloatArray, flow: Flow) -> ComplexArray:
+        """∂Y/∂e (1, M, K), from central differences along the axis."""
+        ends = [
+            self.response(e[0] + step, flow.setting.structure, flow.setting.zeta, flow.batch.omega)
+            for step in (STEP, -STEP)
+        ]
+        return np.asarray(((ends[0] - ends[1]) / (2 * STEP) * flow.drive * flow.factor)[None])
+
+    def response(
+        self, e: FloatArray, structure: RationalStructure, zeta: FloatArray, omega: FloatArray
+    ) -> ComplexArray:
+        """G((1 + e) ω) (M, K) for e (M,) and ζ (M, n)."""
+        pairs = zip(zeta, e, strict=True)
+        return np.stack([structure.plant_response(one, omega * (1 + change)) for one, change in pairs])
+
+
+@dataclass(frozen=True)
+class Coefficient(Effect):
+    """Changes the scheduled coefficients: ζ(p) = T(p) θ + e d(p)."""
+
+    place: ClassVar[str] = "scheduled coefficient"
+
+    @abstractmethod
+    def direction(self, setting: Setting) -> FloatArray:
+        """d (M, n_plant) at the operating points of the batch."""
+
+    def tangent(self, e: FloatArray, flow: Flow) -> ComplexArray:
+        """∂Y/∂e (1, M, K)."""
+        change = np.einsum("mnk,mn->mk", flow.gradient, self.direction(flow.setting))
+        return np.asarray((change * flow.drive * flow.factor)[None])

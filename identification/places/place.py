@@ -1,0 +1,194 @@
+"""What every physical effect says of itself, and what it is told of the experiment it is judged in."""
+
+import dataclasses
+from abc import ABC, abstractmethod
+from dataclasses import dataclass, field
+from functools import cached_property
+from itertools import product
+from typing import ClassVar, Literal, Self
+
+import numpy as np
+
+from identification.arrays import ComplexArray, FloatArray
+from identification.comparison.batch import Batch
+from identification.models import RationalStructure
+
+Quantity = Literal["frequency", "time", "input", "output", "velocity", "number"]
+
+
+@dataclass(frozen=True)
+class FurtherParameter:
+    """A parameter of an effect besides its amplitude, found by a scan and then by the refit.
+
+    `values` are relative to what the experiment offers: for a frequency 0 … 1 runs logarithmically from half the lowest
+    to twice the highest excited frequency, a time is its inverse; levels are relative to the largest input, output or
+    velocity; a number is absolute. `fitted`: False when only scanned. `lowest`, `highest`: the physical range of a
+    number; frequencies and times are kept where the excited band, widened fourfold to each side, can show them.
+    """
+
+    name: str
+    quantity: Quantity
+    values: tuple[float, ...]
+    fitted: bool = True
+    lowest: float = 0.0
+    highest: float = np.inf
+
+
+@dataclass(frozen=True, eq=False)
+class Setting:
+    """What the parameters give at the operating points of a batch.
+
+    `zeta` (M, n); `points` (M, s) scaled to −1 … 1 over the range of the scheduling variables; `transfer` (M, n, k);
+    `zeta_slope` (M, n_plant, s): ∂ζ_G by the scaled scheduling variables.
+    """
+
+    structure: RationalStructure
+    zeta: FloatArray
+    points: FloatArray
+    transfer: FloatArray
+    zeta_slope: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class Flow:
+    """The signals of a batch as the model now explains them: what signatures are computed from.
+
+    `setting.zeta` includes what effects change of it; `response` (M, K) of the plant core; `gradient`
+    (M, n_plant, K) its derivative by ζ_G; `drive` U (M, K) what enters the core; `core` X (M, K) what leaves it;
+    `linear` (M, K) after all that acts linearly; `output` (M, K).
+    """
+
+    batch: Batch
+    setting: Setting
+    response: ComplexArray
+    gradient: ComplexArray
+    drive: ComplexArray
+    core: ComplexArray
+    linear: ComplexArray
+    output: ComplexArray
+    factor: ComplexArray
+    cache: dict[tuple[str, int], FloatArray] = field(default_factory=dict)
+
+    @property
+    def signals(self) -> FloatArray:
+        """The input over one period, (M, L)."""
+        assert self.batch.signals is not None
+        return self.batch.signals
+
+    def finer(self, effect: "Effect") -> int:
+        """By how much the time grid of a force is finer than the samples; not at all in discrete time."""
+        return 1 if self.setting.structure.is_discrete else effect.oversampling
+
+    def core_signal(self, finer: int = 1) -> FloatArray:
+        """What leaves the core, (M, L·finer)."""
+        return self._kept(("x", finer), self.core, finer)
+
+    def core_velocity(self, finer: int = 1) -> FloatArray:
+        """Its rate of change per second, (M, L·finer)."""
+        return self._kept(("v", finer), derivative(self.core, self.batch), finer)
+
+    def input_signal(self, finer: int = 1) -> FloatArray:
+        """The input over one period, (M, L·finer)."""
+        return self._kept(("u", finer), self.batch.inputs, finer)
+
+    def _kept(self, name: tuple[str, int], spectra: ComplexArray, finer: int) -> FloatArray:
+        if name not in self.cache:
+            self.cache[name] = self.batch.signal(spectra, finer)
+        return self.cache[name]
+
+    @cached_property
+    def linear_signal(self) -> FloatArray:
+        """What reaches the sensor, (M, L)."""
+        return self.batch.signal(self.linear)
+
+    def scale(self, quantity: Quantity, relative: float) -> float:
+        """The absolute value of a further parameter whose relative value is given."""
+        if quantity in ("frequency", "time"):
+            low, high = self.batch.band
+            frequency = 0.5 * low * (4 * high / low) ** relative
+            return float(frequency if quantity == "frequency" else 1 / frequency)
+        if quantity == "number" or self.batch.signals is None:
+            return relative
+        signal = {"input": self.signals, "output": self.linear_signal, "velocity": self.core_velocity()}[quantity]
+        return float(relative * abs(signal).max())
+
+
+def derivative(spectra: ComplexArray, batch: Batch) -> ComplexArray:
+    """Lines of the time derivative; the Nyquist line, whose phase is not known, is left out."""
+    omega = np.where(batch.real, 0.0, batch.omega)
+    return np.asarray(1j * omega * spectra)
+
+
+@dataclass(frozen=True)
+class Effect(ABC):
+    """A physical effect with amplitude e; with e = 0 it does nothing. The fields are its further parameters.
+
+    `domain`: the kind of plant it belongs to; `unit` of e in words, `sign` +1 where only e ≥ 0 is physical, `largest`
+    the largest physical |e| (None: no bound), `source` where it is described; `oversampling` of the time grid on which
+    a force is computed in continuous time; `shapes` the number of amplitudes.
+    """
+
+    kind: ClassVar[str]
+    title: ClassVar[str]
+    place: ClassVar[str]
+    unit: ClassVar[str]
+    source: ClassVar[str]
+    domain: ClassVar[str] = "general"
+    sign: ClassVar[int] = 0
+    largest: ClassVar[float | None] = None
+    needs_records: ClassVar[bool] = False
+    shapes: ClassVar[int] = 1
+    oversampling: ClassVar[int] = 2
+    parameters: ClassVar[tuple[FurtherParameter, ...]] = ()
+
+    @classmethod
+    def example(cls) -> Self:
+        """An instance for tests and catalogues."""
+        return cls()
+
+    @abstractmethod
+    def tangent(self, e: FloatArray, flow: Flow) -> ComplexArray:
+        """∂Y/∂e (shapes, M, K) at the amplitude e (shapes, M)."""
+
+    def profile(self, setting: Setting, batch: Batch) -> FloatArray:
+        """How the amplitude is spread over the measurements of a batch, (M,): one everywhere unless overridden."""
+        return np.ones(len(batch.points))
+
+    def judgeable(self, flow: Flow) -> bool:
+        """Whether the data of this batch can show the effect at all."""
+        return not self.needs_records or flow.batch.signals is not None
+
+    def variants(self, flow: Flow) -> list[Self]:
+        """The effect over the grid of its further parameters; itself alone when there are none."""
+        names = [parameter.name for parameter in self.parameters]
+        grids = [[flow.scale(p.quantity, value) for value in p.values] for p in self.parameters]
+        return [dataclasses.replace(self, **dict(zip(names, values, strict=True))) for values in product(*grids)]
+
+    def looked_at(self, flow: Flow) -> int:
+        """How many variants the data were searched for, where that is more than `variants` gives."""
+        return 1
+
+    def fitted_names(self) -> tuple[str, ...]:
+        """Further parameters that a refit adjusts."""
+        return tuple(parameter.name for parameter in self.parameters if parameter.fitted)
+
+    def values(self) -> FloatArray:
+        """The values of the fitted further parameters."""
+        return np.array([getattr(self, name) for name in self.fitted_names()], dtype=np.float64)
+
+    def limits(self, flow: Flow) -> tuple[FloatArray, FloatArray]:
+        """The physical range of the fitted further parameters."""
+        ranges = [_range(parameter, flow) for parameter in self.parameters if parameter.fitted]
+        low, high = np.array(ranges, dtype=np.float64).reshape(-1, 2).T
+        return low, high
+
+    def with_values(self, values: FloatArray) -> Self:
+        """The same effect with other values of the fitted further parameters."""
+        return dataclasses.replace(self, **dict(zip(self.fitted_names(), map(float, values), strict=True)))
+
+
+def _range(parameter: FurtherParameter, flow: Flow) -> tuple[float, float]:
+    if parameter.quantity in ("frequency", "time"):
+        ends = [flow.scale(parameter.quantity, relative) for relative in (0.0, 1.0)]
+        return min(ends) / 2, max(ends) * 2
+    return parameter.lowest, parameter.highest

@@ -1,0 +1,166 @@
+"""Right effects first, those alike in one set, nothing invented, everything else called unknown."""
+
+import numpy as np
+import pytest
+
+from identification.comparison.gather import gather
+from identification.diagnosis.diagnose import diagnose
+from identification.diagnosis.missing import missing_response
+from identification.diagnosis.staircase import conclusion, staircase
+from identification.effects.delay import Delay
+from identification.effects.inductance import Inductance
+from identification.effects.lag import Lag
+from identification.effects.library import library
+from identification.effects.quadratic_sensor import QuadraticSensor
+from identification.signals import FrequencyResponse, TimeRecord
+from tests.support.oscillators import (
+    MODEL,
+    OMEGA,
+    PERIOD,
+    POINTS,
+    SAMPLE_TIME,
+    batches,
+    clean_records,
+    integrated,
+    linear,
+    phasors,
+    records,
+)
+
+SIGMA = 5e-3
+
+
+def with_force(force, seed=1, gain=lambda u: u):
+    g = np.random.default_rng(seed)
+    inputs = [phasors(g, level) for level in (8.0, 5.0, 8.0, 5.0, 8.0)]
+    return gather(records([(a, integrated(p, a, force, gain)) for p, a in zip(POINTS, inputs, strict=True)], g, SIGMA))
+
+
+def kinds(found):
+    return [one.score.candidate.effect.kind for one in found]
+
+
+@pytest.mark.parametrize(
+    ("kind", "data"),
+    [
+        ("cubic_stiffness", lambda: with_force(lambda x, v: 15 * x**3)),
+        ("quadratic_damping", lambda: with_force(lambda x, v: 0.2 * abs(v) * v)),
+        ("quadratic_actuator", lambda: with_force(lambda x, v: 0, gain=lambda u: u + 0.01 * u**2)),
+        ("delay", lambda: batches(2, SIGMA / 5, extra=lambda w: np.exp(-0.02j * w))),
+        ("lag", lambda: batches(2, SIGMA / 5, extra=lambda w: 1 / (1 + 0.03j * w))),
+    ],
+)
+def test_the_hidden_effect_is_first_and_explains_it(kind, data):
+    found = diagnose(MODEL, data())
+    assert kinds(found.announced)[0] == kind
+    assert found.verdict == "explained"
+    assert found.remaining.p_value > 1e-3
+    assert found.lack_of_fit.p_value < 1e-6
+    assert sum(one.weight for one in found.evidence) <= 1 + 1e-9
+
+
+def test_nothing_is_announced_when_nothing_is_missing():
+    found = [diagnose(MODEL, batches(seed), seed=seed) for seed in range(25)]
+    assert sum(bool(one.announced) for one in found) <= 3
+    quiet = next(one for one in found if not one.announced)
+    assert quiet.verdict == "nothing missing"
+    assert quiet.best is None
+
+
+def test_delay_and_lag_are_told_apart_only_by_the_edge_of_the_band():
+    """At small amplitude both are in the announced set, and the confusability says why."""
+    found = diagnose(MODEL, batches(3, 2e-2, extra=lambda w: np.exp(-0.01j * w)), (Delay(), Lag(), QuadraticSensor()))
+    assert set(kinds(found.announced)) == {"delay", "lag"}
+    names = [score.candidate.effect.kind for score in found.scores]
+    pair = found.confusability[names.index("delay"), names.index("lag")]
+    other = found.confusability[names.index("delay"), names.index("quadratic_sensor")]
+    assert pair > 0.999
+    assert other < 0.5
+    assert not found.confident
+
+
+def test_visibility_says_how_small_an_effect_would_be_seen():
+    found = diagnose(MODEL, batches(4), (Delay(),))
+    (visible,) = found.visibility
+    hits = 0
+    for seed in range(60):
+        data = batches(seed, extra=lambda w: np.exp(-1j * w * visible.amplitude))
+        hits += diagnose(MODEL, data, (Delay(),), seed=seed).scores[0].p_value < 0.025
+    assert 0.78 <= hits / 60 <= 0.99
+
+
+def test_what_needs_records_is_not_judged_from_responses():
+    g = np.random.default_rng(5)
+    omega = np.linspace(1, 12, 50)
+    noise = 1e-4 * (g.standard_normal((5, 50)) + 1j * g.standard_normal((5, 50)))
+    clean = MODEL.base.frequency_response([[p] for p in POINTS], omega) + 3e-5j * omega
+    data = [
+        FrequencyResponse(omega, row, (p,), variance=np.full(50, 2e-8))
+        for p, row in zip(POINTS, clean + noise, strict=True)
+    ]
+    found = diagnose(MODEL, gather(data))
+    assert "inductance" in kinds(found.announced)
+    reasons = {one.effect.kind: one.reason for one in found.visibility}
+    assert "records" in reasons["cubic_stiffness"]
+    assert reasons["delay"] == ""
+
+
+def test_records_without_a_period_are_judged_through_their_response():
+    g = np.random.default_rng(6)
+    found = []
+    for p in POINTS:
+        amplitudes = np.concatenate([phasors(g)])
+        u = np.tile(np.real(np.exp(1j * np.outer(np.arange(PERIOD) * SAMPLE_TIME, OMEGA)) @ amplitudes), 4)
+        y = np.tile(linear(p, amplitudes), 4)
+        found.append(TimeRecord(u, y + 1e-3 * g.standard_normal(len(y)), SAMPLE_TIME, (p,), PERIOD))
+    assert diagnose(MODEL, gather(found)).verdict == "nothing missing"
+
+
+def test_what_is_not_in_the_library_is_called_so():
+    even = [
+        TimeRecord(r.input, r.output + 0.2 * np.maximum(r.output, 0.1), SAMPLE_TIME, r.operating_point, PERIOD)
+        for r in clean_records(7)
+    ]
+    linear = ("scheduled coefficient", "multiplies the linear response", "added to the linear response")
+    effects = [one for one in library() if one.place in linear]
+    found = diagnose(MODEL, gather(even), effects)
+    assert found.verdict == "not in the library"
+    assert not found.confident
+    assert conclusion(staircase(MODEL, gather(even), effects=effects, largest=1)) == "not in the library"
+
+
+def test_the_picture_of_what_is_missing_has_its_shape():
+    data = batches(8, extra=lambda w: np.exp(-0.02j * w))
+    found = diagnose(MODEL, data)
+    (picture,) = missing_response(found.base)
+    assert picture.response.shape == (5, 60)
+    true = MODEL.base.frequency_response([[p] for p in POINTS], picture.frequencies)
+    after = found.best.fit.model
+    wanted = true * np.exp(-0.02j * picture.frequencies) - found.base.model.base.frequency_response(
+        [[p] for p in POINTS], picture.frequencies
+    )
+    overlap = abs(np.vdot(wanted, picture.response)) / np.linalg.norm(wanted) / np.linalg.norm(picture.response)
+    assert overlap > 0.85
+    assert len(after.effects) == 1
+
+
+def test_two_effects_are_found_one_after_the_other():
+    def spoilt(seed):
+        made = clean_records(seed, extra=lambda w: np.exp(-0.02j * w))
+        return gather(
+            [TimeRecord(r.input, r.output + 0.1 * r.output**2, SAMPLE_TIME, r.operating_point, PERIOD) for r in made]
+        )
+
+    steps = staircase(MODEL, spoilt(9), spoilt(10))
+    assert {one.effect.kind for one in steps[-1].model.effects} == {"delay", "quadratic_sensor"}
+    errors = [step.held_out_error for step in steps]
+    assert errors == sorted(errors, reverse=True)
+    assert conclusion(steps) == "explained"
+    assert steps[-1].diagnosis.lack_of_fit.p_value > 1e-3
+
+
+def test_the_same_seed_gives_the_same_answer():
+    data = batches(11, extra=lambda w: np.exp(-0.02j * w))
+    one, other = (diagnose(MODEL, data, (Delay(), Lag(), Inductance()), seed=4) for _ in range(2))
+    assert [s.adjusted_p for s in one.scores] == [s.adjusted_p for s in other.scores]
+    assert one.evidence[0].bic == other.evidence[0].bic

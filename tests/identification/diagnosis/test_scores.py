@@ -1,0 +1,108 @@
+"""The score tests: uniform under the null, projected, one-sided, with the noise's own degrees of freedom."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.stats import kstest
+
+from identification.diagnosis.scores import score_tests
+from identification.diagnosis.signatures import candidates, noise_freedom, tangent_space
+from identification.effects.antiresonance import Antiresonance
+from identification.effects.cubic_stiffness import CubicStiffness
+from identification.effects.delay import Delay
+from identification.effects.lag import Lag
+from identification.effects.library import library
+from identification.effects.quadratic_sensor import QuadraticSensor
+from identification.effects.resonance import Resonance
+from identification.effects.time_base import TimeBase
+from identification.extension.fit import fit
+from identification.extension.rows import Rows
+from tests.support.oscillators import MODEL, batches
+
+FEW = (Delay(), Lag(), CubicStiffness(), QuadraticSensor(), Resonance())
+
+
+def base(seed=0, **options):
+    return fit(MODEL, Rows(batches(seed, **options)))
+
+
+def scored(found, effects=FEW):
+    seen = [one for one in candidates(found, effects) if one.signatures]
+    return {s.candidate.effect.kind: s for s in score_tests(found, seen, np.random.default_rng(1))}
+
+
+@pytest.fixture(scope="module")
+def null():
+    return [scored(base(seed)) for seed in range(150)]
+
+
+@pytest.mark.parametrize("kind", ["delay", "cubic_stiffness", "quadratic_sensor", "resonance"])
+def test_p_values_are_uniform_when_nothing_is_missing(null, kind):
+    """The resonance has thirty variants; without the projection p of the others would not be uniform either."""
+    p = [scores[kind].p_value for scores in null]
+    if kind == "delay":
+        p = [value for value in p if value < 0.999]
+    assert kstest(p, "uniform").pvalue > 1e-3
+
+
+def test_the_family_has_one_error_rate(null):
+    alarms = np.mean([min(s.adjusted_p for s in scores.values()) < 0.1 for scores in null])
+    assert 0.03 < alarms < 0.18
+
+
+def test_signatures_are_orthogonal_to_what_the_parameters_can_do():
+    found = base()
+    space = tangent_space(found)
+    for candidate in candidates(found, FEW):
+        for one in candidate.signatures:
+            assert abs(one.basis @ space.T).max() < 1e-9
+            assert np.allclose(one.basis @ one.basis.T, np.eye(len(one.basis)))
+            assert 0 < one.kept <= 1
+
+
+def test_a_change_that_the_parameters_can_make_is_invisible_not_absent():
+    (candidate,) = candidates(base(), [TimeBase()])
+    assert candidate.signatures == ()
+    assert "invisible" in candidate.why_not
+
+
+@pytest.mark.parametrize(("sign", "expected"), [(1, True), (-1, False)])
+def test_a_delay_is_found_and_an_advance_is_none(sign, expected):
+    found = scored(base(extra=lambda w: np.exp(-1j * w * sign * 2e-3)), (Delay(),))["delay"]
+    assert (found.p_value < 1e-3) == expected
+    assert np.sign(found.statistic) == sign
+
+
+def test_the_amplitude_is_read_off_the_score():
+    found = base(extra=lambda w: np.exp(-2e-3j * w))
+    score = scored(found, (Delay(),))["delay"]
+    assert score.signature.amplitudes(found.residual) == pytest.approx([2e-3], rel=0.15)
+
+
+def test_few_periods_give_student_not_normal():
+    """Thirty degrees of freedom for a signature in one place, all of them for one that is everywhere."""
+    found = base()
+    (batch,) = found.rows.batches
+    one, all_lines = np.zeros((2, len(batch.compared)))
+    one[20] = 1.0
+    all_lines[:] = batch.compared / batch.row_count
+    assert noise_freedom([batch], [one]) == pytest.approx(batch.raw_freedom * (2 * batch.half_width + 1), rel=0.01)
+    assert noise_freedom([batch], [all_lines]) > 0.8 * batch.independent_freedom
+    known = replace(batch, raw_freedom=np.inf, freedom=np.inf)
+    assert noise_freedom([known], [one]) == np.inf
+
+
+def test_the_whole_library_can_be_scored():
+    scores = scored(base(), library())
+    assert len(scores) > 30
+    assert all(0 <= s.adjusted_p <= 1 and np.isfinite(s.statistic) for s in scores.values())
+
+
+def test_the_best_variant_is_the_best_when_p_is_too_small_to_tell():
+    """All p of a strong effect are zero; the variant is then the one that explains most."""
+    found = base(sigma=1e-5, extra=lambda w: 1 - 0.3 * 0.6j * w * 5 / (25 - w**2 + 0.6j * w * 5))
+    score = scored(found, (Antiresonance(),))["antiresonance"]
+    sizes = [float(np.sum((one.basis @ found.residual) ** 2)) for one in score.candidate.signatures]
+    assert score.p_value == 0
+    assert sizes[score.best] == max(s for s, one in zip(sizes, score.candidate.signatures, strict=True) if s > 0)
