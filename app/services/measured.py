@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from app.conversion.effects import effect_of
+from app.conversion.plants import is_state_space
 from app.errors import UnprocessableError
 from app.schemas.experiments import Experiment
 from app.schemas.models import Model
@@ -45,7 +46,16 @@ def fitted_experiments(resources: ResourceRepository, model: Model) -> set[str]:
 
 
 def check_time_domain(model: Model, experiments: Sequence[Measured], pointer: str) -> None:
-    """Raises UnprocessableError at the experiment whose sampling is not that of a model in discrete time."""
+    """Raises UnprocessableError at the experiment whose sampling is not that of a model in discrete time.
+
+    Also for a state-space model, which is not held against measurements here.
+    """
+    if is_state_space(model.structure):
+        raise UnprocessableError.at(
+            "/modelId",
+            "this is a state-space model, whose errors its own document states; only rational models are compared and"
+            " diagnosed",
+        )
     if not isinstance(model.structure, DiscreteTimeStructure):
         return
     own = model.structure.sample_time_seconds
