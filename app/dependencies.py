@@ -6,8 +6,6 @@ from fastapi import Depends, Header, Query, Request
 
 from app.container import Container
 from app.jobs.ledger import Ledger
-from app.settings import Settings
-from app.store.arrays import ArrayStore
 from app.store.resources import ResourceRepository
 
 
@@ -28,18 +26,8 @@ def get_resources(container: ContainerDependency) -> ResourceRepository:
     return container.resources
 
 
-def get_arrays(container: ContainerDependency) -> ArrayStore:
-    return container.arrays
-
-
-def get_settings(container: ContainerDependency) -> Settings:
-    return container.settings
-
-
 LedgerDependency = Annotated[Ledger, Depends(get_ledger)]
 ResourcesDependency = Annotated[ResourceRepository, Depends(get_resources)]
-ArraysDependency = Annotated[ArrayStore, Depends(get_arrays)]
-SettingsDependency = Annotated[Settings, Depends(get_settings)]
 
 IdempotencyKey = Annotated[
     str | None,

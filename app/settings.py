@@ -14,7 +14,7 @@ GIBIBYTE = 1024 * MEBIBYTE
 class Settings(BaseSettings):
     """Everything that can be set; the defaults serve one user on this machine."""
 
-    model_config = SettingsConfigDict(env_prefix="LPV_OED_", extra="ignore", frozen=True)
+    model_config = SettingsConfigDict(env_prefix="LPV_OED_", extra="ignore", frozen=True, hide_input_in_errors=True)
 
     data_dir: Path = Field(default=Path("lpv-oed-data"), description="directory of the database and the array files")
     host: str = Field(default="127.0.0.1", description="address to listen on; beyond loopback a token is required")

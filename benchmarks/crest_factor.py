@@ -4,8 +4,8 @@ Prints a table, and writes the same as JSON to FILE or after the table. Times ar
 1000 random draws of phases takes in the same run.
 """
 
+import argparse
 import json
-import sys
 from collections.abc import Callable
 from pathlib import Path
 from time import perf_counter
@@ -120,19 +120,22 @@ def aligned(cells: list[str]) -> str:
     return first[0].ljust(first[1]) + "".join(cell.rjust(width) for cell, width in others)
 
 
-def main(arguments: list[str]) -> None:
+def main() -> None:
     """The whole table, about half a minute."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("file", type=Path, nargs="?", help="where to write the JSON")
+    file = parser.parse_args().file
     print(aligned(list(HEADINGS)))
     rows = []
     for name in CASES:
         rows.append(measured(name))
         print(printed(rows[-1]), flush=True)
     text = json.dumps({"draws": DRAWS, "seed": SEED, "rows": rows}, ensure_ascii=False, indent=2)
-    if arguments:
-        Path(arguments[0]).write_text(text + "\n", encoding="utf-8")
+    if file:
+        file.write_text(text + "\n", encoding="utf-8")
     else:
         print(text)
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    main()

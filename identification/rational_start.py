@@ -1,25 +1,19 @@
-"""Linear starts for rational models on frequency responses: Levy, and Sanathanan–Koerner in orthonormal bases."""
+"""Linear starts for rational models on frequency responses: Sanathanan–Koerner iterations in orthonormal bases."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from identification.arrays import ComplexArray, FloatArray
-from identification.errors import RangeError
-from identification.likelihood import require_same_sampling
-from identification.models import RationalStructure
 from identification.rational_basis import (
     LinearProblem,
     as_zeta,
-    frequency_scale,
     from_poles,
     inner,
     mapped,
     orthonormal,
-    rescale,
     stabilised,
 )
-from identification.signals import FrequencyResponse
 
 DELAY_ITERATIONS = 6
 FINEST = 2000
@@ -56,31 +50,6 @@ class Starts:
         order = list(dict.fromkeys(wanted[wanted < len(tau)].tolist()))[:count]
         usable = [i for i in first[order] if np.isfinite(self.cost[i])]
         return Starts(self.zeta[usable], self.cost[usable])
-
-
-def levy(structure: RationalStructure, data: FrequencyResponse, delay: float = 0.0) -> FloatArray:
-    """Levy's linear least-squares fit, ζ (n,), biased wherever |A| varies over the band or the data are noisy.
-
-        min Σ_k |Ĝ_k e^{jω_k τ} A(ω_k) − B(ω_k)|²   with the constant coefficient of A equal to one   [Levy1959]
-
-    A known delay τ in s may be given. Solved in a basis that is orthonormal on the lines, then turned into ζ.
-    Raises MisuseError where the structure does not fit the data and RangeError where the fit puts a pole at infinity.
-    """
-    require_same_sampling(structure, data)
-    scaled = replace(structure, frequency_scale=frequency_scale(structure, data))
-    problem = LinearProblem.of(scaled, data, np.ones(len(data)))
-    basis = orthonormal(problem, np.ones((1, len(data))))
-    step = _linear_step(problem, basis, problem.advanced(np.array([delay])))
-    constant = np.real(step.coefficients[0, 0, : structure.n_a + 1])
-    _, values, right = np.linalg.svd(step.triangle[0])
-    inverse = np.where(values > values[-1], values[-1] / np.where(values > 0, values, 1.0), 1.0) ** 2
-    t = right.T @ (inverse * (right @ constant))
-    a = step.coefficients[0, : structure.n_a + 1, : structure.n_a + 1] @ t
-    b = step.coefficients[0, : structure.n_b + 1, : structure.n_b + 1] @ step.numerator(t[None])[0]
-    zeta = as_zeta(scaled, a[None], b[None], np.array([delay]))[0]
-    if not np.all(np.isfinite(zeta)):
-        raise RangeError("the linear fit has a pole at infinity; choose a lower order of the denominator", "n_a")
-    return np.asarray(rescale(scaled, structure.frequency_scale) * zeta)
 
 
 def linear_starts(problem: LinearProblem, stable: bool, iterations: int = 20, count: int = 3) -> Starts:
@@ -125,7 +94,7 @@ def _magnitudes(problem: LinearProblem, zeta: FloatArray) -> FloatArray:
 
 
 def first_denominators(problem: LinearProblem) -> FloatArray:
-    """|A_prev| to begin with, (K, F): one (Levy), real poles, lightly damped pairs of poles over the band."""
+    """|A_prev| to begin with, (K, F): one [Levy1959], real poles, lightly damped pairs of poles over the band."""
     n_a, positive = problem.structure.n_a, problem.omega[problem.omega > 0]
     if n_a == 0 or len(positive) == 0:
         return np.ones((1, len(problem.omega)))

@@ -105,6 +105,11 @@ class ParameterDependence:
         """Number of basis functions of each coefficient, (n,)."""
         return tuple(basis.size for basis in self.bases)
 
+    @property
+    def needed_operating_points(self) -> int:
+        """The least number of distinct operating points that determines θ, n_p + 1 in [Ghosh2018, Theorem 1]."""
+        return max(self.sizes)
+
     def parameter_names(self, coefficient_names: Sequence[str]) -> tuple[str, ...]:
         """A name for each entry of θ, such as a1[0], a1[1], b0[0]."""
         pairs = zip(coefficient_names, self.bases, strict=True)
@@ -150,5 +155,5 @@ class ParameterDependence:
             if rank < basis.size:
                 placed = " (enough points, but placed so that some basis functions cannot be told apart)"
                 raise TooFewOperatingPointsError(
-                    max(self.sizes), len(distinct), placed if len(distinct) >= basis.size else ""
+                    self.needed_operating_points, len(distinct), placed if len(distinct) >= basis.size else ""
                 )

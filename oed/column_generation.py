@@ -19,6 +19,7 @@ Progress = Callable[[int, float], None]
 ACTIVE_TARGETS = 12
 MOST_AT_START = 200
 NEGLIGIBLE = 1e-3
+REMEMBERED = 1e-4
 CAP_SLACK = 1e-6
 FEASIBLE = 1e-7
 BOUNDLESS = 1e6
@@ -71,14 +72,16 @@ def least_energy(
         if isinstance(found, Shortfall):
             return found
         start = found
+    slow = False
     best = _Bounds(np.inf, 0.0, np.zeros_like(targets), np.zeros(len(caps)))
     active = np.arange(min(len(targets), ACTIVE_TARGETS))
     for iteration in range(1, max_iterations + 1):
         accuracy = max(1e-8, 0.01 ** (iteration + 1))
         master = solve_master(start, targets[active], caps, accuracy=accuracy)
-        weights = [weight * (np.trace(weight) > 100 * accuracy) for weight in master.weights]
+        weights = _remembered(master.weights, 100 * accuracy, slow)
         offer = pricing.best(master.prices.sum(axis=0), 1 + master.cap_prices, start, weights)
-        best = best.improved(start, master, offer.worth, targets, active, caps)
+        earlier, best = best, best.improved(start, master, offer.worth, targets, active, caps)
+        slow = best.gap > earlier.gap / 5
         if progress is not None:
             progress(iteration, best.gap)
         if best.gap <= tolerance / 4 or not master.solved:
@@ -193,6 +196,16 @@ def _needed_scale(total: FloatArray, targets: FloatArray) -> float:
     values, vectors = np.linalg.eigh(total)
     root = vectors / np.sqrt(np.maximum(values, 1e-14 * max(values[-1], 1e-300)))
     return float(np.linalg.eigvalsh(root.T @ targets @ root)[:, -1].max())
+
+
+def _remembered(weights: Sequence[FloatArray], least: float, everything: bool) -> list[FloatArray]:
+    """Weights without blocks of less energy than `least`; with all directions of a block above zero if asked for.
+
+    Directions of no weight are forgotten by the family, which keeps the master problem small; where progress is slow,
+    they are worth remembering.
+    """
+    floor = REMEMBERED if everything else 0.0
+    return [weight * (np.trace(weight) > least) + floor * np.eye(len(weight)) for weight in weights]
 
 
 def _with_violated(active: IntArray, blocks: Sequence[Block], master: MasterSolution, targets: FloatArray) -> IntArray:

@@ -1,7 +1,7 @@
 """What all documents share: names, numbers, times, problems."""
 
 from datetime import datetime
-from typing import Annotated
+from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field
 from pydantic.alias_generators import to_camel
@@ -30,6 +30,10 @@ class CamelModel(BaseModel):
         strict=True,
         frozen=True,
     )
+
+    def as_json(self) -> dict[str, Any]:
+        """The document as plain JSON, as it is kept and sent."""
+        return self.model_dump(by_alias=True, mode="json")
 
 
 class FieldProblem(CamelModel):

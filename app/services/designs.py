@@ -47,7 +47,7 @@ def payload(plant: Plant, model: Model, request: DesignRequest) -> dict[str, Any
         raise UnprocessableError.at("/usePriorInformation", "the model has no covariance")
     if request.band is not None and request.band.minimum_rad_per_second > request.band.maximum_rad_per_second:
         raise UnprocessableError.at("/band", "the band must rise")
-    return {"plant": _json(plant), "model": _json(model), "request": _json(request)}
+    return {"plant": plant.as_json(), "model": model.as_json(), "request": request.as_json()}
 
 
 def design_of(resource: Resource) -> Design:
@@ -64,8 +64,3 @@ def page(resources: ResourceRepository, plant_id: str | None, limit: int, cursor
     """Part of the list of designs."""
     found = resources.list(KIND, plant_id, limit, cursor)
     return DesignList(items=items(found, design_of), next_cursor=found.next_cursor)
-
-
-def _json(document: Any) -> dict[str, Any]:
-    result: dict[str, Any] = document.model_dump(by_alias=True, mode="json")
-    return result

@@ -7,10 +7,9 @@ from app.errors import UnprocessableError
 from app.store.resources import Page, Resource, ResourceRepository
 
 Document = TypeVar("Document")
-MORE = dict[str, Any]
 
 
-def fields(resource: Resource, *more: str) -> MORE:
+def fields(resource: Resource, *more: str) -> dict[str, Any]:
     """The document of a row with its identifier and age, and with plantId or jobId where asked for."""
     known = {"plantId": resource.plant_id, "jobId": resource.job_id}
     added = {"id": resource.id, "createdAt": resource.created_at}

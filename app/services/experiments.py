@@ -62,7 +62,7 @@ def file_payload(plant: Plant, request: FileFields, content: bytes, name: str) -
     """What the task gets beside the hash of the file, and the file as an array of bytes."""
     if not content:
         raise UnprocessableError.at("/file", "the file is empty")
-    stated = request.model_dump(by_alias=True, mode="json")
+    stated = request.as_json()
     return _task(file_format(name), name[:200], stated, plant), {"file": np.frombuffer(content, dtype=np.uint8)}
 
 

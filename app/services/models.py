@@ -59,10 +59,10 @@ def payload(
     else:
         check_prior(plant, prior, structure, dependence, request.experiment_ids)
     return {
-        "plant": _json(plant),
-        "request": _json(request),
-        "prior": prior and _json(prior),
-        "experiments": [{"document": _json(experiment), "arrays": arrays} for experiment, arrays in experiments],
+        "plant": plant.as_json(),
+        "request": request.as_json(),
+        "prior": prior and prior.as_json(),
+        "experiments": [{"document": experiment.as_json(), "arrays": arrays} for experiment, arrays in experiments],
     }
 
 
@@ -80,17 +80,17 @@ def stated(plant: Plant, request: StatedModelRequest) -> dict[str, Any]:
     return {
         "softwareVersion": __version__,
         "origin": "stated",
-        **{name: _json(plant)[name] for name in ("structure", "basis", "coefficientBases")},
-        **{name: _json(request)[name] for name in ("name", "description")},
+        **{name: plant.as_json()[name] for name in ("structure", "basis", "coefficientBases")},
+        **{name: request.as_json()[name] for name in ("name", "description")},
         "coefficientNames": list(structure.coefficient_names),
         "parameterNames": list(model.parameter_names),
         **accuracy_documents(model),
         **({} if request.covariance else {"covariance": None, "standardDeviations": None}),
-        "outcome": _json(OutcomeDocument(status="converged", advice="", iterations=0)),
+        "outcome": OutcomeDocument(status="converged", advice="", iterations=0).as_json(),
         "tests": [],
         "localModels": [],
         "stable": True,
-        "poles": [_json(poles) for poles in over_range["poles"]],
+        "poles": [poles.as_json() for poles in over_range["poles"]],
         **dict.fromkeys(("localEstimator", "lpvEstimator", "spectralEstimator", "designId", "parentId", "seed")),
         "experimentIds": [],
     }
@@ -123,8 +123,3 @@ def page(resources: ResourceRepository, plant_id: str | None, limit: int, cursor
     """Part of the list of models."""
     found = resources.list(KIND, plant_id, limit, cursor)
     return ModelList(items=items(found, model_of), next_cursor=found.next_cursor)
-
-
-def _json(document: Any) -> dict[str, Any]:
-    result: dict[str, Any] = document.model_dump(by_alias=True, mode="json")
-    return result

@@ -28,10 +28,10 @@ def described(request: PlantRequest) -> dict[str, Any]:
         names = MATRIX_NAMES if state_space else rational_of(request.structure).coefficient_names
         dependence = plant_dependence(request)
     return {
-        **request.model_dump(by_alias=True, mode="json"),
+        **request.as_json(),
         "softwareVersion": __version__,
         "parameterNames": list(dependence.parameter_names(names)),
-        "neededOperatingPoints": max(dependence.sizes),
+        "neededOperatingPoints": dependence.needed_operating_points,
     }
 
 

@@ -37,7 +37,7 @@ def payload(design: Design, request: SignalsRequest) -> dict[str, Any]:
             raise UnprocessableError.at("/samples", detail)
     if request.method == "filtered_noise" and any(e.spectrum.kind != "fir" for e in design.experiments):
         raise UnprocessableError.at("/method", "noise has no lines; play a design with line spectra as a multisine")
-    return {"design": _json(design), "request": _json(request)}
+    return {"design": design.as_json(), "request": request.as_json()}
 
 
 def signals_of(resource: Resource) -> Signals:
@@ -54,8 +54,3 @@ def page(resources: ResourceRepository, plant_id: str | None, limit: int, cursor
     """Part of the list of signals."""
     found = resources.list(KIND, plant_id, limit, cursor)
     return SignalsList(items=items(found, signals_of), next_cursor=found.next_cursor)
-
-
-def _json(document: Any) -> dict[str, Any]:
-    result: dict[str, Any] = document.model_dump(by_alias=True, mode="json")
-    return result

@@ -53,12 +53,9 @@ def payload(
     if request.refinement is not None:
         _check_refinement(plant, request, structure, dependence)
     return {
-        "plant": plant.model_dump(by_alias=True, mode="json"),
-        "request": request.model_dump(by_alias=True, mode="json"),
-        "experiments": [
-            {"document": experiment.model_dump(by_alias=True, mode="json"), "arrays": arrays}
-            for experiment, arrays in experiments
-        ],
+        "plant": plant.as_json(),
+        "request": request.as_json(),
+        "experiments": [{"document": experiment.as_json(), "arrays": arrays} for experiment, arrays in experiments],
     }
 
 

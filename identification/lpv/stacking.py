@@ -12,11 +12,6 @@ from identification.scheduling import ParameterDependence
 from identification.signals import Measurement, OperatingPoint
 
 
-def needed_operating_points(dependence: ParameterDependence) -> int:
-    """The least number of distinct operating points that determines θ, n_p + 1 in [Ghosh2018, Theorem 1]."""
-    return max(dependence.sizes)
-
-
 def stacked_points(
     structure: RationalStructure,
     dependence: ParameterDependence,

@@ -5,6 +5,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 HEAVY = ("scipy.signal", "scipy.stats", "scipy.optimize", "cvxpy", "clarabel", "plotly", "rich", "typer")
 SCRIPT = f"""
 import sys
@@ -20,3 +22,29 @@ def test_the_server_loads_nothing_heavy_and_writes_nothing(tmp_path: Path, repos
     done = subprocess.run(command, env=environment, cwd=tmp_path, capture_output=True, text=True, check=True)
     assert done.stdout.split() == []
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("settings", "expected"),
+    [
+        ({"HOST": "0.0.0.0"}, "set LPV_OED_TOKEN, or LPV_OED_HOST=127.0.0.1"),
+        ({"PORT": "99999", "TOKEN": "a-token"}, "LPV_OED_PORT: Input should be less than or equal to 65535"),
+        ({"TASK_PACKAGES": "one"}, "task_packages"),
+    ],
+)
+def test_settings_that_are_refused_are_explained_without_a_traceback(
+    tmp_path: Path, repository: Path, settings: dict[str, str], expected: str
+) -> None:
+    given = {f"LPV_OED_{name}": value for name, value in settings.items()}
+    done = subprocess.run(
+        [sys.executable, "-m", "app.cli", "serve"],
+        env={**os.environ, "PYTHONPATH": str(repository), **given},
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 1
+    assert done.stderr.strip().count("\n") == 0
+    assert expected in done.stderr
+    assert "a-token" not in done.stderr

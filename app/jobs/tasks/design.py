@@ -108,9 +108,9 @@ def _document(payload: dict[str, Any], model: LpvModel, problem: DesignProblem, 
         "softwareVersion": __version__,
         "request": payload["request"],
         "modelId": payload["model"]["id"],
-        "outcome": _json(outcome_document(found.outcome)),
+        "outcome": outcome_document(found.outcome).as_json(),
         "sampleTimeSeconds": problem.step,
-        "experiments": [_json(experiment) for experiment in experiments],
+        "experiments": [experiment.as_json() for experiment in experiments],
         "totalEnergy": finite_or_none(found.total_energy),
         "lowerBound": finite_or_none(found.lower_bound),
         "gap": finite_or_none(found.gap),
@@ -119,7 +119,7 @@ def _document(payload: dict[str, Any], model: LpvModel, problem: DesignProblem, 
         "parameterNames": list(model.parameter_names),
         "expectedCovariance": finite_list_or_none(found.expected_covariance),
         "expectedStandardDeviations": standard_deviations(found.expected_covariance),
-        "binding": [_json(_binding(problem, binding)) for binding in found.binding],
+        "binding": [_binding(problem, binding).as_json() for binding in found.binding],
     }
 
 
@@ -131,8 +131,3 @@ def _binding(problem: DesignProblem, binding: Binding) -> BindingDocument:
         operating_point=None if is_target else problem.points[binding.index].tolist(),
         multiplier=finite_or_none(binding.multiplier),
     )
-
-
-def _json(document: Any) -> dict[str, Any]:
-    result: dict[str, Any] = document.model_dump(by_alias=True, mode="json")
-    return result

@@ -41,7 +41,7 @@ def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
         "varianceDegreesOfFreedom": data.variance_degrees_of_freedom if isinstance(data, FrequencyResponse) else None,
         "source": payload["source"],
         "fileName": payload["fileName"],
-        "understood": understood.model_dump(by_alias=True, mode="json"),
+        "understood": understood.as_json(),
     }
     return TaskResult(document, kept)
 

@@ -92,7 +92,7 @@ def _document(
 ) -> dict[str, Any]:
     model = estimate.model
     designs = {experiment.design_id for experiment in experiments}
-    asked = request.model_dump(by_alias=True, mode="json")
+    asked = request.as_json()
     structure, basis, own_bases = chosen(plant, request)
     over_range = range_documents(model)
     locals_ = zip(local, data, experiments, strict=True)
@@ -102,24 +102,19 @@ def _document(
         },
         "softwareVersion": __version__,
         "origin": "identified",
-        "structure": _json(structure),
-        "basis": _json(basis),
-        "coefficientBases": [_json(basis) for basis in own_bases],
+        "structure": structure.as_json(),
+        "basis": basis.as_json(),
+        "coefficientBases": [basis.as_json() for basis in own_bases],
         "coefficientNames": list(model.structure.coefficient_names),
         "parameterNames": list(model.parameter_names),
         **accuracy_documents(model),
-        "outcome": _json(outcome_document(estimate.outcome)),
-        "tests": [_json(test) for test in test_documents(estimate.tests)],
-        "localModels": [_json(local_document(one, fitted, e.id)) for one, fitted, e in locals_],
+        "outcome": outcome_document(estimate.outcome).as_json(),
+        "tests": [test.as_json() for test in test_documents(estimate.tests)],
+        "localModels": [local_document(one, fitted, e.id).as_json() for one, fitted, e in locals_],
         "stable": over_range["stable"],
-        "poles": [_json(poles) for poles in over_range["poles"]],
+        "poles": [poles.as_json() for poles in over_range["poles"]],
         "experimentIds": list(request.experiment_ids),
         "designId": designs.pop() if len(designs) == 1 else None,
         "parentId": request.prior_model_id,
         "seed": None,
     }
-
-
-def _json(document: Any) -> dict[str, Any]:
-    result: dict[str, Any] = document.model_dump(by_alias=True, mode="json")
-    return result

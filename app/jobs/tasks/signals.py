@@ -32,7 +32,7 @@ def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
         with field_named(FIELDS), within_doubles():
             signal = _realised(design, experiment, request, generator)
         arrays[f"period{i}"] = signal.signal
-        documents.append(_document(i, experiment, signal).model_dump(by_alias=True, mode="json"))
+        documents.append(_document(i, experiment, signal).as_json())
     document = {
         "softwareVersion": __version__,
         "modelId": design.model_id,

@@ -124,16 +124,16 @@ def _document(
     plant: Plant, request: StateSpaceModelRequest, experiments: Sequence[Experiment], found: Found
 ) -> dict[str, Any]:
     designs = {experiment.design_id for experiment in experiments}
-    asked = request.model_dump(by_alias=True, mode="json")
+    asked = request.as_json()
     structure, basis, own_bases = chosen(plant, request)
     guarantee = refined_guarantee(request.refinement, found)
     return {
         **{name: asked[name] for name in ("name", "description", "spectralEstimator")},
         "softwareVersion": __version__,
         "origin": "identified",
-        "structure": structure.model_dump(by_alias=True, mode="json"),
-        "basis": basis.model_dump(by_alias=True, mode="json"),
-        "coefficientBases": [own.model_dump(by_alias=True, mode="json") for own in own_bases],
+        "structure": structure.as_json(),
+        "basis": basis.as_json(),
+        "coefficientBases": [own.as_json() for own in own_bases],
         **model_documents(found),
         "localModels": [],
         "localEstimator": None,

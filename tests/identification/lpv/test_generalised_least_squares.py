@@ -10,7 +10,6 @@ from identification.bases.b_spline import BSpline
 from identification.errors import MisuseError, NotIdentifiableError, ShapeError, TooFewOperatingPointsError
 from identification.estimates import LocalEstimate
 from identification.lpv.generalised_least_squares import GeneralisedLeastSquares
-from identification.lpv.stacking import needed_operating_points
 from identification.lti.prediction_error import PredictionError
 from identification.models import LocalModel, LpvModel
 from identification.outcome import Outcome
@@ -130,7 +129,7 @@ def test_two_stages_are_as_good_as_one():
 
 
 def test_too_few_operating_points_says_how_many_are_needed():
-    assert needed_operating_points(polynomial_dependence(1, 3, 0)) == 4
+    assert polynomial_dependence(1, 3, 0).needed_operating_points == 4
     with pytest.raises(TooFewOperatingPointsError, match="at least 2") as raised:
         fitted((3.0, 3.0, 3.0))
     assert (raised.value.needed, raised.value.given) == (2, 1)

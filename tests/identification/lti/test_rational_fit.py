@@ -11,7 +11,6 @@ from identification.arrays import FloatArray
 from identification.errors import MisuseError, NotIdentifiableError, RangeError
 from identification.lti.rational_fit import RationalFit, relative_error
 from identification.models import LocalModel, RationalStructure
-from identification.rational_start import levy
 from identification.signals import FrequencyResponse
 
 RELATIVE = RationalFit(weighting="relative")
@@ -213,21 +212,3 @@ def test_the_estimate_is_the_same_every_time_and_in_every_order_of_the_lines():
     other = RationalFit().estimate(structure, shuffled)
     np.testing.assert_allclose(other.model.zeta, first.model.zeta, rtol=1e-4)
     assert [t.p_value for t in other.tests] == pytest.approx([t.p_value for t in first.tests], rel=1e-3)
-
-
-def test_levy_is_exact_without_noise_and_worse_than_maximum_likelihood_with_it():
-    structure = RationalStructure(2, 1)
-    zeta = np.array([1.2, 4.0, 1.0, 3.0])
-    exact = response(structure, zeta, np.geomspace(0.05, 50, 80))
-    np.testing.assert_allclose(levy(structure, exact), zeta, rtol=1e-9)
-    data = noisy(exact, 0.05, 0)
-    linear = LocalModel(structure, (0.0,), levy(structure, data), np.eye(4), 1.0)
-    assert relative_error(linear, exact) > 3 * relative_error(RELATIVE.estimate(structure, data).model, exact)
-
-
-def test_levy_with_a_known_delay():
-    structure = RationalStructure(1, 0, delay=True)
-    zeta = np.array([2.0, 3.0, 0.4])
-    np.testing.assert_allclose(
-        levy(structure, response(structure, zeta, np.geomspace(0.1, 20, 40)), 0.4), zeta, rtol=1e-9
-    )
