@@ -67,10 +67,10 @@ def model_documents(found: Found) -> dict[str, Any]:
         "covariance": None if covariance is None else finite_list_or_none(covariance),
         "standardDeviations": None if covariance is None else standard_deviations(covariance),
         "noiseVariance": None if refined is None else refined.noise_variance,
-        "outcome": _json(outcome_document(found.outcome)),
-        "tests": [] if refined is None else [_json(test) for test in test_documents(refined.tests)],
+        "outcome": outcome_document(found.outcome).as_json(),
+        "tests": [] if refined is None else [test.as_json() for test in test_documents(refined.tests)],
         "stable": _stable(found),
-        "poles": [_json(poles) for poles in _poles(found)],
+        "poles": [poles.as_json() for poles in _poles(found)],
     }
 
 
@@ -98,7 +98,7 @@ def state_space_result(
         pole_guarantee=guarantee,
         local_models=[local_document(one, name) for one, name in zip(found.local, ids, strict=bool(found.local))],
     )
-    return _json(result)
+    return result.as_json()
 
 
 def refined_guarantee(refinement: PlugInDocument | None, found: Found) -> PoleGuarantee | None:
@@ -164,8 +164,3 @@ def _rows(parametric: ParametricEstimate) -> ChosenRows:
         indices=[int(index) for index in rows.indices],
         worst_singular_value=rows.worst_singular_value,
     )
-
-
-def _json(document: Any) -> dict[str, Any]:
-    result: dict[str, Any] = document.as_json()
-    return result

@@ -58,9 +58,8 @@ def identify(file: Path, output: Path) -> None:
         names = [experiment.id for experiment, _ in experiments]
         asked = {"plantId": PLANT_ID, "experimentIds": names, **section(content, "model")}
         by_name = {experiment.id: (experiment, arrays) for experiment, arrays in experiments}
-        kind: type[StateSpaceModelRequest] | type[ModelRequest] = (
-            StateSpaceModelRequest if is_state_space(plant.structure) else ModelRequest
-        )
+        kind: type[StateSpaceModelRequest | ModelRequest]
+        kind = StateSpaceModelRequest if is_state_space(plant.structure) else ModelRequest
         request = checked(kind, asked, "/model")
         chosen = [by_name[name] for name in request.experiment_ids if name in by_name]
         found = place.run(*_identification(plant, request, chosen))
