@@ -74,10 +74,9 @@ class _Judge:
         residual, count = self.residual[chosen], float(chosen.sum())
         energy, freedom = float(residual @ residual), count - float(self.leverage[chosen].sum())
         if self.covariance is not None:
-            tangents = self.tangents[:, chosen]
-            projected = tangents @ residual
-            inside = np.linalg.inv(self.covariance) + tangents @ tangents.T
-            energy -= float(projected @ np.linalg.solve(inside, projected))
+            tangents = _root(self.covariance).T @ self.tangents[:, chosen]
+            values, vectors = np.linalg.eigh(tangents @ tangents.T)
+            energy -= float(np.sum((vectors.T @ (tangents @ residual)) ** 2 / (1 + np.maximum(values, 0.0))))
         return lack_of_fit(name, energy, freedom, self._noise_freedom(chosen))
 
     def _noise_freedom(self, chosen: BoolArray) -> float:
@@ -117,6 +116,14 @@ def compare(model: ExtendedModel, batches: Sequence[Batch], fitted: bool = True)
         between,
         percent,
     )
+
+
+def _root(covariance: FloatArray) -> FloatArray:
+    """S with S Sᵀ = P, for P that may be singular: parameters that are known exactly."""
+    scale = np.sqrt(np.diagonal(covariance))
+    size = np.where(scale > 0, scale, 1.0)
+    values, vectors = np.linalg.eigh(covariance / np.outer(size, size))
+    return np.asarray(size[:, None] * vectors * np.sqrt(np.maximum(values, 0.0)))
 
 
 def _compared(rows: Rows) -> BoolArray:

@@ -266,3 +266,19 @@ def test_the_same_key_is_the_same_job(api: Api, model: Json, fitted: list[str]) 
     other = api.http.post("/comparisons", json={**body, "meanValue": False}, headers={"Idempotency-Key": "c1"})
     assert api.problem(other)["status"] == 409
     assert api.finished(jobs[0])["result"]["kind"] == "comparisons"
+
+
+def test_parameters_may_be_known_exactly(api: Api, plant: Json) -> None:
+    """A stiffness that is 0.2 off is explained by a standard deviation of 0.4, and by nothing else."""
+    record = HiddenPlant(0.0).records([0.4], level=10.0, seed=21)[0]
+    experiment = api.made("/experiments", {"plantId": plant["id"], **record})["id"]
+    body = {"plantId": plant["id"], "theta": [1.8, 64.2, 28.0, 1.0], "noiseVariance": 1.0}
+    found = []
+    for deviation in (0.4, 0.0):
+        covariance = np.diag([0.0, deviation**2, 0.0, 0.0]).tolist()
+        model = api.post("/models/stated", {**body, "covariance": covariance})
+        compared = api.made("/comparisons", {"modelId": model["id"], "experimentIds": [experiment]})
+        found.append(compared["parts"][0]["lackOfFit"])
+    assert found[0]["pValue"] > 1e-3
+    assert found[1]["pValue"] < 1e-6
+    assert found[0]["statistic"] < found[1]["statistic"]

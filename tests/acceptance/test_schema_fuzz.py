@@ -7,6 +7,7 @@ import time
 from collections.abc import Iterator
 from typing import Any
 
+import numpy as np
 import pytest
 import requests
 import schemathesis
@@ -22,7 +23,7 @@ from schemathesis.specs.openapi.checks import (
 from tests.support import responses
 from tests.support.api import Api, Json
 from tests.support.client import OPENAPI
-from tests.support.paper import FIGURES, prepared
+from tests.support.paper import FIGURES, THETA, prepared
 from tests.support.server import Server, running_server
 
 CHECKS: list[CheckFunction] = [
@@ -62,7 +63,13 @@ def known(fuzzed: Server) -> dict[str, str]:
     signal = [float(t % 7 - 3) for t in range(50)]
     record = {"kind": "timeRecord", "sampleTimeSeconds": 1.0, "input": signal, "output": signal[::-1]}
     experiment = api.made("/experiments", {**record, "plantId": plant["id"], "operatingPoint": [1.0]})
+    compared = {"modelId": model["id"], "experimentIds": [experiment["id"]]}
+    diagnosis = api.made("/diagnoses", compared)
+    covariance = (np.eye(len(THETA)) * 1e-6).tolist()
+    stated = {"plantId": plant["id"], "theta": THETA, "noiseVariance": 0.5, "covariance": covariance}
+    comparison = api.made("/comparisons", {**compared, "modelId": api.post("/models/stated", stated)["id"]})
     made = {"plantId": plant, "modelId": model, "experimentId": experiment, "signalsId": signals}
+    made |= {"comparisonId": comparison, "diagnosisId": diagnosis}
     return {name: document["id"] for name, document in made.items()} | {"designId": design, "jobId": job["id"]}
 
 
@@ -82,6 +89,8 @@ def with_known(values: Any, known: dict[str, str]) -> Any:
     found = {name: known[name] for name in values if name in known}
     if "experimentIds" in values:
         found["experimentIds"] = [known["experimentId"]]
+    if "effect" in values:
+        found["effect"] = "delay"
     return {**values, **found}
 
 
