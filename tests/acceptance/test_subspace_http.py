@@ -237,6 +237,9 @@ def test_requests_for_the_other_sort_of_model_say_where_to_go(api: Api, plant: J
     model = identified(api, plant, exact, parametricEstimator=PARAMETRIC)
     design = {**paper.FIGURES[0].body(plant, model), "operatingPoints": paper.only(0.0)}
     assert pointers(api.refused("/designs", design)) == ["/modelId"]
+    held_against = {"modelId": model["id"], "experimentIds": exact}
+    assert pointers(api.refused("/comparisons", held_against)) == ["/modelId"]
+    assert pointers(api.refused("/diagnoses", held_against)) == ["/modelId"]
     answer = api.http.get(f"/models/{model['id']}/frequency-response", params=query(operatingPoint=1.0, outputNumber=3))
     assert pointers(api.problem(answer)) == ["/outputNumber"]
 
