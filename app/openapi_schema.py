@@ -15,7 +15,8 @@ REFERENCE = "#/components/schemas/{model}"
 PUBLISHED = (Problem, JobEvent)
 DESCRIPTION = (
     "Identification of linear parameter-varying systems with the least input energy for a guaranteed accuracy: "
-    "describe a plant, design experiments, identify from what was measured."
+    "describe a plant, design experiments, identify from what was measured, see where the model fails, find the "
+    "physical effect that is missing and add it."
 )
 _METHODS = ("get", "put", "post", "delete", "patch")
 _ALWAYS = {400: "The request cannot be read", 401: "The bearer token is missing or wrong"}
