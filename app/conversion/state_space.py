@@ -50,7 +50,7 @@ def kept_state_space(model: Model, plant: Plant) -> ParameterVaryingStateSpace |
     if found is None or found.matrices is None:
         return None
     dependence = parameter_dependence(MATRIX_NAMES, plant.scheduling_variables, model.basis, model.coefficient_bases)
-    a, b, c, d = (np.array(getattr(found.matrices, name), dtype=float) for name in "abcd")
+    a, b, c, d = (np.array(getattr(found.matrices, f"matrix_{name}"), dtype=float) for name in "abcd")
     return ParameterVaryingStateSpace(dependence.variables, dependence.bases, a, b, c, d, found.sample_time_seconds)
 
 
@@ -60,7 +60,7 @@ def kept_local(model: Model, point: Sequence[float]) -> StateSpace:
     local = model.state_space.local_models
     for one in local:
         if np.allclose(one.operating_point, point, rtol=1e-9, atol=0.0):
-            a, b, c, d = (np.array(getattr(one, name), dtype=float) for name in "abcd")
+            a, b, c, d = (np.array(getattr(one, f"matrix_{name}"), dtype=float) for name in "abcd")
             return StateSpace(a, b, c, d, one.sample_time_seconds)
     known = "; ".join(", ".join(f"{value:g}" for value in one.operating_point) for one in local[:10])
     raise MisuseError(f"this model is one of single operating points only; choose one of them: {known}")
@@ -80,7 +80,9 @@ def entry_names(model: ParameterVaryingStateSpace) -> list[str]:
 
 def matrices_document(model: ParameterVaryingStateSpace) -> MatricesDocument:
     """The matrices of each function."""
-    return MatricesDocument(a=model.a.tolist(), b=model.b.tolist(), c=model.c.tolist(), d=model.d.tolist())
+    return MatricesDocument(
+        matrix_a=model.a.tolist(), matrix_b=model.b.tolist(), matrix_c=model.c.tolist(), matrix_d=model.d.tolist()
+    )
 
 
 def range_poles(model: ParameterVaryingStateSpace) -> list[PolesAtPoint]:
@@ -122,10 +124,10 @@ def local_document(estimate: SubspaceEstimate, experiment_id: str) -> LocalState
         operating_point=point,
         order=model.order,
         sample_time_seconds=model.sample_time,
-        a=model.a.tolist(),
-        b=model.b.tolist(),
-        c=model.c.tolist(),
-        d=model.d.tolist(),
+        matrix_a=model.a.tolist(),
+        matrix_b=model.b.tolist(),
+        matrix_c=model.c.tolist(),
+        matrix_d=model.d.tolist(),
         poles=PolesAtPoint(operating_point=point, poles=ComplexVector.of(model.poles)),
         stable=bool(model.stable),
         outcome=outcome_document(estimate.outcome),

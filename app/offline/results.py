@@ -44,7 +44,7 @@ def _matrices(found: StateSpaceResult) -> dict[str, NDArray[Any]]:
     """a, b, c, d of each basis function, and those of each local model as a1, b1, …, a2, …"""
     sources = [("", found.matrices), *((str(i + 1), local) for i, local in enumerate(found.local_models))]
     return {
-        f"{name}{number}": np.array(getattr(source, name))
+        f"{name}{number}": np.array(getattr(source, f"matrix_{name}"))
         for number, source in sources
         if source is not None
         for name in "abcd"

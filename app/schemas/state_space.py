@@ -41,10 +41,10 @@ class StateSpaceModelRequest(CamelModel):
 class MatricesDocument(CamelModel):
     """The matrices of a parameter-varying model, each a list with one matrix for each function of its basis."""
 
-    a: Matrices
-    b: Matrices
-    c: Matrices
-    d: Matrices
+    matrix_a: Matrices
+    matrix_b: Matrices
+    matrix_c: Matrices
+    matrix_d: Matrices
 
 
 class ResponseErrorDocument(CamelModel):
@@ -75,10 +75,10 @@ class LocalStateSpaceModel(CamelModel):
     operating_point: Vector
     order: Integer
     sample_time_seconds: Double | None = Field(description="null in continuous time")
-    a: Matrix
-    b: Matrix
-    c: Matrix
-    d: Matrix
+    matrix_a: Matrix
+    matrix_b: Matrix
+    matrix_c: Matrix
+    matrix_d: Matrix
     poles: PolesAtPoint
     stable: bool
     outcome: OutcomeDocument

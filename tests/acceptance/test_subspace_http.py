@@ -109,7 +109,7 @@ def test_noise_free_responses_give_the_plant_itself(api: Api, plant: Json, exact
     found = model["stateSpace"]
     truth = responses.true_plant()
     for name in "abcd":
-        assert np.allclose(found["matrices"][name], getattr(truth, name), atol=1e-9), name
+        assert np.allclose(found["matrices"][f"matrix{name.upper()}"], getattr(truth, name), atol=1e-9), name
     assert found["chosenRows"]["counts"] == [2, 1]
     assert 0 < found["chosenRows"]["worstSingularValue"] <= 1
     assert [error["experimentId"] for error in found["errors"]] == exact
@@ -157,7 +157,7 @@ def test_a_polynomial_dependence_is_guaranteed_on_a_grid_only(api: Api, plant: J
     guarantee = model["stateSpace"]["poleGuarantee"]
     assert (guarantee["guaranteed"], guarantee["operatingPoints"]) == ("grid", 9)
     assert "nothing is proved" in model["outcome"]["advice"]
-    assert [len(model["stateSpace"]["matrices"][name]) for name in "abcd"] == [3, 3, 3, 3]
+    assert [len(model["stateSpace"]["matrices"][f"matrix{name}"]) for name in "ABCD"] == [3, 3, 3, 3]
 
 
 def test_a_region_that_the_data_exclude_is_infeasible_by_so_much(api: Api, plant: Json, noisy: list[str]) -> None:

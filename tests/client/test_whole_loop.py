@@ -1,6 +1,5 @@
 """The whole loop by a program that knows the service only through its generated client."""
 
-import time
 from types import ModuleType
 from typing import Any
 
@@ -9,36 +8,11 @@ import pytest
 
 from identification.arrays import FloatArray
 from tests.support import client
+from tests.support.client import Caller
 from tests.support.paper import DEVIATIONS, NOISE_VARIANCE, THETA, played
 from tests.support.server import Server
 
 ELLIPSOID = 22.46  # 99.9 % quantile of χ²(6)
-
-
-class Caller:
-    """Operations of the generated package by their tags and names; `m` holds the documents."""
-
-    def __init__(self, package: ModuleType, url: str) -> None:
-        self.package = package
-        self.m = client.documents(package)
-        self.client = package.Client(base_url=url, timeout=30.0)
-
-    def __call__(self, tag: str, name: str, *arguments: object, **options: object) -> Any:
-        """The document that an operation answers with; whatever is no success is an error of the test."""
-        answer = client.operation(self.package, tag, name).sync_detailed(*arguments, client=self.client, **options)
-        assert 200 <= answer.status_code < 300, answer.parsed
-        return answer.parsed
-
-    def finished(self, job: Any, seconds: float = 30.0) -> str:
-        """Identifier of what a job made."""
-        states = self.m.JobState
-        end = time.monotonic() + seconds
-        while job.state in (states.QUEUED, states.RUNNING):
-            assert time.monotonic() < end, f"the job is not done after {seconds} s: {job}"
-            time.sleep(0.05)
-            job = self("jobs", "get_job", job.id)
-        assert job.state is states.SUCCEEDED, job.problem
-        return str(job.result.id)
 
 
 @pytest.fixture(scope="module")

@@ -4,8 +4,10 @@ import importlib
 import io
 import subprocess
 import sys
+import time
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 from tests.support.sources import ROOT
 
@@ -53,3 +55,29 @@ def documents(package: ModuleType) -> ModuleType:
 def file(package: ModuleType, content: bytes, name: str) -> object:
     """A file to be uploaded."""
     return importlib.import_module(f"{package.__name__}.types").File(payload=io.BytesIO(content), file_name=name)
+
+
+class Caller:
+    """Operations of the generated package by their tags and names; `m` holds the documents."""
+
+    def __init__(self, package: ModuleType, url: str) -> None:
+        self.package = package
+        self.m = documents(package)
+        self.client = package.Client(base_url=url, timeout=30.0)
+
+    def __call__(self, tag: str, name: str, *arguments: object, **options: object) -> Any:
+        """The document that an operation answers with; whatever is no success is an error of the test."""
+        answer = operation(self.package, tag, name).sync_detailed(*arguments, client=self.client, **options)
+        assert 200 <= answer.status_code < 300, answer.parsed
+        return answer.parsed
+
+    def finished(self, job: Any, seconds: float = 30.0) -> str:
+        """Identifier of what a job made."""
+        states = self.m.JobState
+        end = time.monotonic() + seconds
+        while job.state in (states.QUEUED, states.RUNNING):
+            assert time.monotonic() < end, f"the job is not done after {seconds} s: {job}"
+            time.sleep(0.05)
+            job = self("jobs", "get_job", job.id)
+        assert job.state is states.SUCCEEDED, job.problem
+        return str(job.result.id)
