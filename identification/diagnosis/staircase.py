@@ -7,12 +7,14 @@ from typing import Literal
 import numpy as np
 
 from identification.comparison.batch import EXCITED, Batch
-from identification.diagnosis.diagnose import ALMOST, STRICT, Diagnosis, diagnose
+from identification.diagnosis.diagnose import STRICT, Diagnosis, diagnose
+from identification.effects.library import library
 from identification.extension.fit import Fit, fit
 from identification.extension.model import ExtendedModel
 from identification.places.place import Effect
 
 LARGEST = 4
+NEGLIGIBLE = 0.005
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,19 +58,25 @@ def staircase(
 ) -> tuple[Step, ...]:
     """Diagnose, add the announced effect of most weight, fit θ and all effects together, and again.
 
-    Ends at the noise floor (no effect is announced), after `largest` effects, or when an effect would raise the error
+    Effects on signals are added once: several of one kind would only imitate a curve that is not in the library. Ends
+    at the noise floor (no effect is announced), after `largest` effects, or when an effect would raise the error
     on held-out data.
     """
     current = diagnose(model, batches, effects, degree, seed)
     steps = [_step(current.base, batches, held_out, current)]
     while current.best is not None and len(steps) <= largest:
         grown = fit(current.best.fit.model, current.best.fit.rows, exact=current.best.fit.rows.scaled)
-        current = diagnose(grown.model, batches, effects, degree, seed)
+        current = diagnose(grown.model, batches, _left(grown.model, effects), degree, seed)
         found = _step(grown, batches, held_out, current)
         if _rises(found.held_out_error, steps[-1].held_out_error):
             break
         steps.append(found)
     return tuple(steps)
+
+
+def _left(model: ExtendedModel, effects: Sequence[Effect] | None) -> tuple[Effect, ...]:
+    there = {one.effect.kind for one in model.effects if one.effect.needs_records}
+    return tuple(one for one in (library() if effects is None else effects) if one.kind not in there)
 
 
 def conclusion(steps: Sequence[Step]) -> Literal["nothing missing", "explained", "not in the library"]:
@@ -79,7 +87,7 @@ def conclusion(steps: Sequence[Step]) -> Literal["nothing missing", "explained",
     last, first = steps[-1].diagnosis, steps[0].diagnosis
     excess = last.lack_of_fit.statistic - last.lack_of_fit.degrees_of_freedom
     at_first = first.lack_of_fit.statistic - first.lack_of_fit.degrees_of_freedom
-    if last.lack_of_fit.p_value >= STRICT or excess <= (1 - ALMOST) * at_first:
+    if last.lack_of_fit.p_value >= STRICT or excess <= NEGLIGIBLE * at_first:
         return "explained" if len(steps) > 1 else "nothing missing"
     return "not in the library"
 

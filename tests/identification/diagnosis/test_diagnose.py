@@ -60,8 +60,8 @@ def test_the_hidden_effect_is_first_and_explains_it(kind, data):
 
 
 def test_nothing_is_announced_when_nothing_is_missing():
-    found = [diagnose(MODEL, batches(seed), seed=seed) for seed in range(25)]
-    assert sum(bool(one.announced) for one in found) <= 3
+    found = [diagnose(MODEL, batches(seed), seed=seed) for seed in range(15)]
+    assert sum(bool(one.announced) for one in found) <= 2
     quiet = next(one for one in found if not one.announced)
     assert quiet.verdict == "nothing missing"
     assert quiet.best is None

@@ -34,7 +34,7 @@ def scored(found, effects=FEW):
 
 @pytest.fixture(scope="module")
 def null():
-    return [scored(base(seed)) for seed in range(150)]
+    return [scored(base(seed)) for seed in range(100)]
 
 
 @pytest.mark.parametrize("kind", ["delay", "cubic_stiffness", "quadratic_sensor", "resonance"])
