@@ -11,34 +11,28 @@ from identification.sub_markov import BasisSelection, HankelBlocks
 
 
 @dataclass(frozen=True, eq=False)
-class CorrelatedSubMarkov:
-    """Estimates of sub-Markov parameters by correlation of output, scheduling and input [Cox2018, (6)–(8)].
+class WhiteExcitation:
+    """Scheduling and input that are white, and the sequences dual to them.
 
-        Ĉ_{s₁}A_{s₂} ⋯ B_{s_n} = 1/(N−n+1) Σ_t y(t) ψ*_{s₁}(t) ψ*_{s₂}(t−1) ⋯ ψ*_{s_n}(t−n+1) u*(t−n+1)ᵀ
-        ψ* = (E ψψᵀ)⁻¹ ψ,   u* = (var u)⁻¹ (u − E u)
+        ψ* = (E ψψᵀ)⁻¹ ψ,   u* = (var u)⁻¹ (u − E u),   so that E ψ*ψᵀ = I and E u*uᵀ = I
 
-    `psi` (N, k) basis functions along the scheduling, ψ₀ = 1 first; `input` (N, n_u); `output` (N, n_y), zero initial
-    state. The dual sequences ψ*, u* are those of the sample moments; for zero-mean, mutually uncorrelated ψ_i they are
-    ψ_i/σ_i² as in (6), otherwise they take means and dependence among the ψ_i at one time out. Assumes u white (A2),
-    ψ white and independent of u (A3), noise independent of both. All parameters with rows of one length come from
-    one matrix product. Raises ShapeError for unequal lengths and NotIdentifiableError for constant inputs or linearly
-    dependent basis functions.
+    `psi` (N, k) basis functions along the scheduling, ψ₀ = 1 first; `input` (N, n_u). The moments are those of the
+    sample. For zero-mean, mutually uncorrelated ψ_i the dual is ψ_i/σ_i², as in [Cox2018, (6)]; otherwise it takes out
+    means and the dependence of the ψ_i on each other at one time. Raises ShapeError for unequal lengths and
+    NotIdentifiableError for constant inputs or linearly dependent basis functions.
     """
 
     psi: FloatArray
     input: FloatArray
-    output: FloatArray
 
     def __post_init__(self) -> None:
-        if not len(self.psi) == len(self.input) == len(self.output):
+        if len(self.psi) != len(self.input):
             raise ShapeError(
-                f"basis functions, input and output have {len(self.psi)}, {len(self.input)} and {len(self.output)}"
-                " samples; give records of one length",
-                "output",
+                f"{len(self.psi)} samples of scheduling and {len(self.input)} of the input were given", "input"
             )
 
     @cached_property
-    def _psi_dual(self) -> FloatArray:
+    def psi_dual(self) -> FloatArray:
         """ψ*, (k, N)."""
         moments = self.psi.T @ self.psi / len(self.psi)
         if _singular(moments):
@@ -50,7 +44,7 @@ class CorrelatedSubMarkov:
         return np.ascontiguousarray(np.linalg.solve(moments, self.psi.T))
 
     @cached_property
-    def _input_dual(self) -> FloatArray:
+    def input_dual(self) -> FloatArray:
         """u*, (n_u, N)."""
         centred = self.input - self.input.mean(axis=0)
         variance = centred.T @ centred / len(centred)
@@ -61,14 +55,46 @@ class CorrelatedSubMarkov:
         return np.ascontiguousarray(np.linalg.solve(variance, centred.T))
 
     @cached_property
+    def pulses(self) -> FloatArray:
+        """ψ*_β(t) u*_j(t), (k n_u, N)."""
+        return np.asarray((self.psi_dual[:, None] * self.input_dual).reshape(-1, len(self.psi)))
+
+    def fit(self, output: FloatArray) -> "CorrelatedSubMarkov":
+        """The sub-Markov parameters of an output (N, n_y)."""
+        return CorrelatedSubMarkov(self, output)
+
+
+@dataclass(frozen=True, eq=False)
+class CorrelatedSubMarkov:
+    """Estimates of sub-Markov parameters by correlation of output, scheduling and input [Cox2018, (6)–(8)].
+
+        Ĉ_{s₁}A_{s₂} ⋯ B_{s_n} = 1/(N−n+1) Σ_t y(t) ψ*_{s₁}(t) ψ*_{s₂}(t−1) ⋯ ψ*_{s_n}(t−n+1) u*(t−n+1)ᵀ
+
+    `output` (N, n_y) from rest. Assumes u white (A2), ψ white and independent of u (A3), noise independent of both.
+    All parameters with rows of one length come from one matrix product. Raises ShapeError for unequal lengths,
+    NotIdentifiableError when the record is too short for the words.
+    """
+
+    excitation: WhiteExcitation
+    output: FloatArray
+
+    def __post_init__(self) -> None:
+        if len(self.output) != len(self.excitation.psi):
+            raise ShapeError(
+                f"the output has {len(self.output)} samples, the scheduling {len(self.excitation.psi)}", "output"
+            )
+
+    @cached_property
     def _output_rows(self) -> FloatArray:
         return np.ascontiguousarray(self.output.T)
 
-    @cached_property
-    def _pulses(self) -> FloatArray:
-        """ψ*_β(t) u*_j(t), (k n_u, N)."""
-        n = self._psi_dual.shape[1]
-        return np.asarray((self._psi_dual[:, None] * self._input_dual).reshape(-1, n))
+    @property
+    def _psi_dual(self) -> FloatArray:
+        return self.excitation.psi_dual
+
+    @property
+    def _input_dual(self) -> FloatArray:
+        return self.excitation.input_dual
 
     def hankel(self, rows: BasisSelection, columns: BasisSelection) -> FloatArray:
         """ℋ_{ν,ς}, (n_o, n_r)."""
@@ -77,8 +103,8 @@ class CorrelatedSubMarkov:
     def direct(self) -> FloatArray:
         """D_k, (k, n_y, n_u)."""
         k, n = self._psi_dual.shape
-        found = self._output_rows @ self._pulses.T / n
-        return found.reshape(len(found), k, -1).transpose(1, 0, 2)
+        found = self._output_rows @ self.excitation.pulses.T / n
+        return np.asarray(found.reshape(len(found), k, -1).transpose(1, 0, 2))
 
     def blocks(self, rows: BasisSelection, columns: BasisSelection) -> HankelBlocks:
         """All blocks of the basis-reduced realisation, the columns of them all side by side in the products."""
@@ -89,7 +115,7 @@ class CorrelatedSubMarkov:
         longer = beside[n_r : -k * n_u].reshape(k, n_r, n)
         longer[:, :, 0] = 0.0
         np.multiply(self._psi_dual[:, None, 1:], right[:, :-1], out=longer[:, :, 1:])
-        beside[-k * n_u :] = self._pulses
+        beside[-k * n_u :] = self.excitation.pulses
         lengths = np.concatenate([columns.lengths, np.tile(columns.lengths + 1, k), np.ones(k * n_u, dtype=np.int64)])
         found = _products(left, beside, rows, lengths)
         return HankelBlocks(
@@ -104,7 +130,8 @@ class CorrelatedSubMarkov:
         """C_k ℛ_ς, (k, n_y, n_r)."""
         k, n = self._psi_dual.shape
         left = (self._psi_dual[:, None] * self._output_rows).reshape(-1, n)
-        return (left[:, 1:] @ right[:, :-1].T / (n - lengths)).reshape(k, -1, len(right))
+        found = left[:, 1:] @ right[:, :-1].T / (n - lengths)
+        return np.asarray(found.reshape(k, -1, len(right)))
 
     def _rows(self, rows: BasisSelection) -> FloatArray:
         """y_i(t) ψ*_{γ}(t) ψ*_{a₁}(t−1) ⋯, (n_o, N)."""
@@ -119,7 +146,7 @@ class CorrelatedSubMarkov:
         return _delayed_products(self._psi_dual, self._input_dual, columns, at_end=True)
 
     def _require_samples(self, words: BasisSelection) -> None:
-        longest, samples = int(words.lengths.max()), len(self.psi)
+        longest, samples = int(words.lengths.max()), len(self.output)
         if samples < 4 * (longest + 1):
             raise NotIdentifiableError(
                 f"{samples} samples are too few for words of {longest} letters; record longer", "output"

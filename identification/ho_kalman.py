@@ -4,20 +4,31 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from identification.affine_state_space import AffineStateSpace, Matrices
 from identification.arrays import FloatArray, IntArray
 from identification.errors import NotIdentifiableError, RangeError
+from identification.scheduling import SchedulingVariable
 from identification.sub_markov import BasisSelection, SubMarkovSource, every_word
 
 
 @dataclass(frozen=True, eq=False)
 class Realisation:
-    """A (k, n_x, n_x), B (k, n_x, n_u), C (k, n_y, n_x), D (k, n_y, n_u) and all singular values of the Hankel matrix."""
+    """Stacks a (k, n_x, n_x), b (k, n_x, n_u), c (k, n_y, n_x), d (k, n_y, n_u), and what they come from.
 
-    A: FloatArray
-    B: FloatArray
-    C: FloatArray
-    D: FloatArray
+    `singular_values`: all those of the Hankel matrix, from the largest down.
+    """
+
+    matrices: Matrices
     singular_values: FloatArray
+
+    @property
+    def order(self) -> int:
+        """n_x."""
+        return int(self.matrices[0].shape[1])
+
+    def model(self, sample_time: float, variables: tuple[SchedulingVariable, ...] = ()) -> AffineStateSpace:
+        """As a state-space model."""
+        return AffineStateSpace(*self.matrices, sample_time, variables)
 
 
 def largest_entries(hankel: FloatArray, rows: int, columns: int) -> tuple[IntArray, IntArray]:
@@ -70,9 +81,8 @@ def reduced_realisation(
     n = _checked_order(values, order)
     root = np.sqrt(values[:n])
     left, right = u[:, :n].T / root[:, None], v[:n].T / root
-    return Realisation(
-        left @ blocks.shifted @ right, left @ blocks.from_input, blocks.to_output @ right, blocks.direct, values
-    )
+    matrices = (left @ blocks.shifted @ right, left @ blocks.from_input, blocks.to_output @ right, blocks.direct)
+    return Realisation(matrices, values)
 
 
 def full_realisation(
@@ -102,7 +112,7 @@ def full_realisation(
     A = np.stack([reachability[:, places] @ inverse for places in _prolonged(depth_columns, k, n_u)])
     B = reachability[:, : k * n_u].reshape(n, k, n_u).transpose(1, 0, 2)
     C = observability[: k * n_y].reshape(k, n_y, n)
-    return Realisation(A, B, C, direct, values)
+    return Realisation((A, B, C, direct), values)
 
 
 def _prolonged(depth: int, k: int, n_u: int) -> list[IntArray]:
@@ -120,7 +130,8 @@ def _checked_order(values: FloatArray, order: int | None) -> int:
     n = order_by_singular_values(values) if order is None else order
     if not 1 <= n <= len(values):
         raise RangeError(
-            f"order {n} needs a Hankel matrix of at least that size, it has {len(values)}; select more rows and columns",
+            f"order {n} needs a Hankel matrix of at least that size, it has {len(values)}; select more rows and"
+            " columns",
             "order",
         )
     if values[n - 1] <= 1e-12 * values[0]:

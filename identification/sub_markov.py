@@ -15,12 +15,12 @@ Word = tuple[int, ...]
 
 @dataclass(frozen=True)
 class BasisSelection:
-    """Rows or columns of the extended Hankel matrix: a word of basis functions and a channel each [Cox2018, (16), (18)].
+    """Rows or columns of the extended Hankel matrix: a word of basis functions and a channel each.
 
         row (γ a₁ … a_m, i):  C_γ^{[i]} A_{a₁} ⋯ A_{a_m}        column (a₁ … a_m β, j):  A_{a₁} ⋯ A_{a_m} B_β^{[j]}
 
-    Letters stand in the order of the matrix product, the latest sample first (the strings of the source run the
-    other way); letter 0 is the constant ψ₀ = 1. Channels count from 0. Raises ShapeError for unequal numbers or
+    Letters stand in the order of the matrix product, the latest sample first (the strings of [Cox2018, (16), (18)] run
+    the other way); letter 0 is the constant ψ₀ = 1. Channels count from 0. Raises ShapeError for unequal numbers or
     without words, RangeError for an empty word or a negative letter or channel.
     """
 
@@ -47,7 +47,7 @@ class BasisSelection:
 
     @cached_property
     def letters(self) -> dict[int, tuple[IntArray, IntArray, IntArray]]:
-        """By length l: positions (m,) in the selection, letters (l, m) and channels (m,) of the words of that length."""
+        """By length l of words: positions (m,) in the selection, letters (l, m) and channels (m,)."""
         found = {}
         for length in np.unique(self.lengths):
             at = np.flatnonzero(self.lengths == length)
@@ -120,35 +120,35 @@ class SubMarkovSource(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class ExactSubMarkov:
-    """The sub-Markov parameters of known matrices: A (k, n_x, n_x), B (k, n_x, n_u), C (k, n_y, n_x), D (k, n_y, n_u).
+    """The sub-Markov parameters of known matrices: a (k, n_x, n_x), b (k, n_x, n_u), c (k, n_y, n_x), d (k, n_y, n_u).
 
     𝒪_ν and ℛ_ς are built as in [Cox2018, (17), (19)] and multiplied as in (20).
     """
 
-    A: FloatArray
-    B: FloatArray
-    C: FloatArray
-    D: FloatArray
+    a: FloatArray
+    b: FloatArray
+    c: FloatArray
+    d: FloatArray
 
     def observability(self, rows: BasisSelection) -> FloatArray:
         """𝒪_ν, (n_o, n_x)."""
-        rows.require_within(len(self.C), self.C.shape[1], "rows")
-        found = np.empty((len(rows), self.A.shape[1]))
+        rows.require_within(len(self.c), self.c.shape[1], "rows")
+        found = np.empty((len(rows), self.a.shape[1]))
         for at, letters, channels in rows.letters.values():
-            part = self.C[letters[0], channels]
+            part = self.c[letters[0], channels]
             for letter in letters[1:]:
-                part = np.einsum("mi,mij->mj", part, self.A[letter])
+                part = np.einsum("mi,mij->mj", part, self.a[letter])
             found[at] = part
         return found
 
     def reachability(self, columns: BasisSelection) -> FloatArray:
         """ℛ_ς, (n_x, n_r)."""
-        columns.require_within(len(self.B), self.B.shape[2], "columns")
-        found = np.empty((self.A.shape[1], len(columns)))
+        columns.require_within(len(self.b), self.b.shape[2], "columns")
+        found = np.empty((self.a.shape[1], len(columns)))
         for at, letters, channels in columns.letters.values():
-            part = self.B[letters[-1], :, channels]
+            part = self.b[letters[-1], :, channels]
             for letter in letters[-2::-1]:
-                part = np.einsum("mij,mj->mi", self.A[letter], part)
+                part = np.einsum("mij,mj->mi", self.a[letter], part)
             found[:, at] = part.T
         return found
 
@@ -158,12 +158,12 @@ class ExactSubMarkov:
 
     def direct(self) -> FloatArray:
         """D_k, (k, n_y, n_u)."""
-        return self.D
+        return self.d
 
     def blocks(self, rows: BasisSelection, columns: BasisSelection) -> HankelBlocks:
         """All blocks of the basis-reduced realisation."""
         left, right = self.observability(rows), self.reachability(columns)
-        return HankelBlocks(left @ right, left @ self.A @ right, left @ self.B, self.C @ right, self.D)
+        return HankelBlocks(left @ right, left @ self.a @ right, left @ self.b, self.c @ right, self.d)
 
 
 @dataclass(frozen=True, eq=False)

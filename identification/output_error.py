@@ -1,0 +1,167 @@
+"""Maximum likelihood of affine state-space models from time records with white output noise."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.linalg import solve_triangular
+
+from identification.affine_state_space import AffineStateSpace, Matrices, frozen_matrices, propagate
+from identification.arrays import FloatArray
+from identification.errors import NotIdentifiableError, ShapeError
+from identification.least_squares import levenberg_marquardt
+from identification.outcome import Outcome
+from identification.varying import VaryingRecord
+
+ROUNDS = 4
+
+
+@dataclass(frozen=True, eq=False)
+class OutputErrorEstimate:
+    """A model, the covariance of its entries, the covariance Σ_w (n_y, n_y) of the noise, and the errors (N, n_y).
+
+    `covariance` (n_θ, n_θ): of θ = vec [A_k B_k; C_k D_k], matrix after matrix and row by row, in the coordinates of
+    this model; zero along the n_x² directions of a change of state coordinates.
+    """
+
+    model: AffineStateSpace
+    covariance: FloatArray
+    noise_covariance: FloatArray
+    errors: FloatArray
+    outcome: Outcome
+
+
+def output_error(start: AffineStateSpace, record: VaryingRecord, max_iterations: int = 30) -> OutputErrorEstimate:
+    """The output-error estimate from a model near it: maximum likelihood when the noise is white and Gaussian.
+
+        θ̂ = arg min Σ_t ‖Σ_w^{-½} (y(t) − ŷ(t, θ))‖²,   P_θ = Q (QᵀJᵀJQ)⁻¹ Qᵀ
+
+    All matrices are free; θ moves in the orthogonal complement Q of what a change of state coordinates does to first
+    order, A_kT − TA_k, −TB_k, C_kT, at the start of each round, so that JQ has full rank. Σ_w is the covariance of the
+    errors of the round before, at least 1e-20 of the output's mean square. The state starts from zero. Raises
+    ShapeError for sizes that do not fit and NotIdentifiableError with fewer values of the output than parameters.
+    """
+    _require_fit(start, record)
+    model, iterations = start, 0
+    floor = 1e-20 * np.maximum(np.mean(record.output**2, axis=0), np.finfo(float).tiny)
+    errors = record.output - _simulated(_matrices(model), record)[1]
+    for _ in range(ROUNDS):
+        problem = _Problem(_matrices(model), record, errors.T @ errors / len(errors) + np.diag(floor), floor)
+        solution = levenberg_marquardt(problem.evaluate, np.zeros(problem.free), None, max_iterations, 1e-4)
+        iterations += solution.outcome.iterations
+        a, b, c, d = problem.matrices(solution.x)
+        model = replace(model, a=a, b=b, c=c, d=d)
+        errors = record.output - _simulated((a, b, c, d), record)[1]
+        if solution.outcome.status != "converged" or solution.cost > (1 - 1e-6) * errors.size:
+            break
+        if np.all(np.mean(errors**2, axis=0) < floor):
+            break
+    covariance = problem.basis @ solution.covariance @ problem.basis.T
+    outcome = Outcome(solution.outcome.status, solution.outcome.advice, iterations)
+    return OutputErrorEstimate(model, covariance, errors.T @ errors / len(errors), errors, outcome)
+
+
+def _require_fit(start: AffineStateSpace, record: VaryingRecord) -> None:
+    widths = (start.n_inputs, start.n_outputs, start.n_scheduling)
+    given = tuple(signal.shape[1] for signal in (record.input, record.output, record.scheduling))
+    if widths != given:
+        raise ShapeError(
+            f"the model has {widths} inputs, outputs and scheduling signals, the record {given}; give the same",
+            "record",
+        )
+    parameters = sum(each.size for each in _matrices(start))
+    if record.output.size <= parameters:
+        raise NotIdentifiableError(
+            f"{record.output.size} values of the output cannot determine {parameters} parameters; record longer or"
+            " choose a lower order",
+            "output",
+        )
+
+
+def _matrices(model: AffineStateSpace) -> Matrices:
+    return model.a, model.b, model.c, model.d
+
+
+def _simulated(matrices: Matrices, record: VaryingRecord) -> tuple[FloatArray, FloatArray]:
+    """States (N, n_x) and output (N, n_y) from rest; what diverges comes out as inf or nan."""
+    a, b, c, d = frozen_matrices(matrices, record.scheduling)
+    u = record.input[..., None]
+    with np.errstate(over="ignore", invalid="ignore"):
+        x = propagate(a, (b @ u)[..., 0], np.zeros(a.shape[-1]))[:-1]
+        return x, np.asarray((c @ x[..., None] + d @ u)[..., 0])
+
+
+class _Problem:
+    """Whitened errors and their derivative with respect to β, θ = θ_start + Q β."""
+
+    def __init__(self, matrices: Matrices, record: VaryingRecord, noise: FloatArray, floor: FloatArray) -> None:
+        self.n_x = matrices[0].shape[1]
+        self.start = _joined(matrices)
+        self.basis = _transverse(matrices)
+        self.free = self.basis.shape[1]
+        self.record, self.root = record, np.linalg.cholesky(noise)
+        # One constant residual of the size of rounding, so that the search ends when only rounding is left.
+        self.rounding = float(np.sqrt(len(record) * np.sum(floor / np.diag(noise))))
+
+    def matrices(self, beta: FloatArray) -> Matrices:
+        """A, B, C, D at β."""
+        joined = self.start + (self.basis @ beta).reshape(self.start.shape)
+        n = self.n_x
+        return joined[:, :n, :n], joined[:, :n, n:], joined[:, n:, :n], joined[:, n:, n:]
+
+    def evaluate(self, beta: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """r (N n_y + 1,) and ∂r/∂β (N n_y + 1, free); infinite errors where the model blows up."""
+        matrices, record = self.matrices(beta), self.record
+        x, output = _simulated(matrices, record)
+        size = output.size + 1
+        if not np.all(np.isfinite(output)) or abs(output).max() > 1e6 * abs(record.output).max():
+            return np.full(size, np.inf), np.zeros((size, self.free))
+        gradient = _gradient(matrices, record.scheduling, np.concatenate([x, record.input], axis=1), self.basis)
+        residual, jacobian = np.full(size, self.rounding), np.zeros((size, self.free))
+        residual[:-1] = solve_triangular(self.root, (record.output - output).T, lower=True).ravel()
+        turned = -gradient.transpose(1, 0, 2).reshape(output.shape[1], -1)
+        jacobian[:-1] = solve_triangular(self.root, turned, lower=True).reshape(size - 1, self.free)
+        return residual, jacobian
+
+
+def _joined(matrices: Matrices) -> FloatArray:
+    A, B, C, D = matrices
+    return np.concatenate([np.concatenate([A, B], axis=2), np.concatenate([C, D], axis=2)], axis=1)
+
+
+def _transverse(matrices: Matrices) -> FloatArray:
+    """Orthonormal complement of the tangent of similarity at θ, (n_θ, n_θ − n_x²)."""
+    A, B, C, D = matrices
+    n = A.shape[1]
+    columns = []
+    for unit in np.eye(n * n).reshape(-1, n, n):
+        columns.append(_joined((A @ unit - unit @ A, -unit @ B, C @ unit, np.zeros_like(D))).ravel())
+    u, values, _ = np.linalg.svd(np.array(columns).T, full_matrices=True)
+    return np.asarray(u[:, int(np.sum(values > 1e-10 * values[0])) :])
+
+
+def _gradient(matrices: Matrices, scheduling: FloatArray, signal: FloatArray, basis: FloatArray) -> FloatArray:
+    """∂ŷ/∂β, (N, n_y, free), from the sensitivities of the state to a pulse in each equation."""
+    k, n_x, n_y = len(matrices[0]), matrices[0].shape[1], matrices[2].shape[1]
+    a, _, c, _ = frozen_matrices(matrices, scheduling)
+    psi = np.concatenate([np.ones((len(scheduling), 1)), scheduling], axis=1)
+    regressors = psi[:, :, None] * signal[:, None, :]
+    drive = regressors.reshape(len(psi), -1)
+    sensitivity = _sensitivities(a, drive)
+    by_row = c @ sensitivity.reshape(len(psi), n_x, -1)
+    per_equation = basis.reshape(k, n_x + n_y, signal.shape[1], -1).transpose(1, 0, 2, 3)
+    through_state = per_equation[:n_x].reshape(n_x * drive.shape[1], -1)
+    at_output = per_equation[n_x:].reshape(n_y, drive.shape[1], -1)
+    found = by_row.reshape(-1, through_state.shape[0]) @ through_state
+    return np.asarray(found.reshape(len(psi), n_y, -1) + np.stack([drive @ each for each in at_output], axis=1))
+
+
+def _sensitivities(A: FloatArray, drive: FloatArray) -> FloatArray:
+    """S(t+1) = A(t) S(t) + I ⊗ φ(t), (N, n_x, n_x, m): state, equation, regressor."""
+    n, n_x = len(A), A.shape[1]
+    found = np.zeros((n, n_x, n_x, drive.shape[1]))
+    flat = found.reshape(n, n_x, -1)
+    equation = np.arange(n_x)
+    for t in range(n - 1):
+        np.matmul(A[t], flat[t], out=flat[t + 1])
+        found[t + 1, equation, equation] += drive[t]
+    return found
