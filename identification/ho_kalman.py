@@ -53,17 +53,16 @@ def _first_distinct(values: IntArray, count: int) -> IntArray:
     return np.asarray(values[np.sort(first)[:count]])
 
 
-def order_by_singular_values(values: FloatArray, largest: int | None = None) -> int:
-    """The number of singular values σ₁ ≥ σ₂ ≥ … before their largest relative drop σ_n / σ_{n+1}, at most `largest`.
+def order_by_singular_values(values: FloatArray) -> int:
+    """The last n in the first half of σ₁ ≥ σ₂ ≥ … whose drop σ_n / σ_{n+1} is at least 0.7 of the largest there.
 
     Values below 1e-12 σ₁ count as rounding. Raises NotIdentifiableError when all are zero.
     """
     if not len(values) or values[0] <= 0:
         raise NotIdentifiableError("the sub-Markov parameters are all zero; check the data", "output")
     floored = np.maximum(values, 1e-12 * values[0])
-    drops = floored[:-1] / floored[1:]
-    candidates = drops[: min(largest or len(drops), len(drops))]
-    return int(np.argmax(candidates)) + 1 if len(candidates) else 1
+    drops = (floored[:-1] / floored[1:])[: (len(values) + 1) // 2]
+    return int(np.flatnonzero(drops >= 0.7 * drops.max())[-1]) + 1 if len(drops) else 1
 
 
 def reduced_realisation(

@@ -109,17 +109,23 @@ class _Problem:
         return joined[:, :n, :n], joined[:, :n, n:], joined[:, n:, :n], joined[:, n:, n:]
 
     def evaluate(self, beta: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """r (N n_y + 1,) and ∂r/∂β (N n_y + 1, free); infinite errors where the model blows up."""
+        """Qᵀr and Qᵀ ∂r/∂β (free + …,), Q from a triangular factor of both; infinite where the model blows up.
+
+        The long residual itself is not needed: its norm and the projections on the derivatives are kept by Qᵀ.
+        """
         matrices, record = self.matrices(beta), self.record
         x, output = _simulated(matrices, record)
-        size = output.size + 1
+        columns = self.basis.shape[0] + 1
         if not np.all(np.isfinite(output)) or abs(output).max() > 1e6 * abs(record.output).max():
-            return np.full(size, np.inf), np.zeros((size, self.free))
-        gradient = _gradient(matrices, record.scheduling, np.concatenate([x, record.input], axis=1), self.basis)
-        residual, jacobian = np.full(size, self.rounding), np.zeros((size, self.free))
-        residual[:-1] = solve_triangular(self.root, (record.output - output).T, lower=True).ravel()
-        turned = -gradient.transpose(1, 0, 2).reshape(output.shape[1], -1)
-        jacobian[:-1] = solve_triangular(self.root, turned, lower=True).reshape(size - 1, self.free)
+            return np.full(columns + 1, np.inf), np.zeros((columns + 1, self.free))
+        stacked = np.empty((output.size, columns))
+        states_and_inputs = np.concatenate([x, record.input], axis=1)
+        _fill_gradient(stacked[:, :-1], matrices, record.scheduling, states_and_inputs, self.root)
+        stacked[:, -1] = solve_triangular(self.root, (record.output - output).T, lower=True).ravel()
+        factor = np.linalg.qr(stacked, mode="r")
+        residual, jacobian = np.full(columns + 1, self.rounding), np.zeros((columns + 1, self.free))
+        residual[: len(factor)], residual[len(factor) : -1] = factor[:, -1], 0.0
+        jacobian[: len(factor)] = -factor[:, :-1] @ self.basis
         return residual, jacobian
 
 
@@ -139,20 +145,21 @@ def _transverse(matrices: Matrices) -> FloatArray:
     return np.asarray(u[:, int(np.sum(values > 1e-10 * values[0])) :])
 
 
-def _gradient(matrices: Matrices, scheduling: FloatArray, signal: FloatArray, basis: FloatArray) -> FloatArray:
-    """∂ŷ/∂β, (N, n_y, free), from the sensitivities of the state to a pulse in each equation."""
-    k, n_x, n_y = len(matrices[0]), matrices[0].shape[1], matrices[2].shape[1]
+def _fill_gradient(
+    found: FloatArray, matrices: Matrices, scheduling: FloatArray, signal: FloatArray, root: FloatArray
+) -> None:
+    """Σ_w^{-½} ∂ŷ/∂θ into `found` (n_y N, n_θ), from the sensitivities of the state to a pulse in each equation."""
+    k, n_x, n_y, samples = len(matrices[0]), matrices[0].shape[1], matrices[2].shape[1], len(signal)
     a, _, c, _ = frozen_matrices(matrices, scheduling)
-    psi = np.concatenate([np.ones((len(scheduling), 1)), scheduling], axis=1)
-    regressors = psi[:, :, None] * signal[:, None, :]
-    drive = regressors.reshape(len(psi), -1)
-    sensitivity = _sensitivities(a, drive)
-    by_row = c @ sensitivity.reshape(len(psi), n_x, -1)
-    per_equation = basis.reshape(k, n_x + n_y, signal.shape[1], -1).transpose(1, 0, 2, 3)
-    through_state = per_equation[:n_x].reshape(n_x * drive.shape[1], -1)
-    at_output = per_equation[n_x:].reshape(n_y, drive.shape[1], -1)
-    found = by_row.reshape(-1, through_state.shape[0]) @ through_state
-    return np.asarray(found.reshape(len(psi), n_y, -1) + np.stack([drive @ each for each in at_output], axis=1))
+    psi = np.concatenate([np.ones((samples, 1)), scheduling], axis=1)
+    drive = (psi[:, :, None] * signal[:, None, :]).reshape(samples, -1)
+    whitener = solve_triangular(root, np.eye(n_y), lower=True)
+    by_equation = found.reshape(n_y, samples, k, n_x + n_y, signal.shape[1])
+    sensitivity = _sensitivities(a, drive).reshape(samples, n_x, -1)
+    through_state = ((whitener @ c) @ sensitivity).reshape(samples, n_y, n_x, k, -1)
+    by_equation[:, :, :, :n_x] = through_state.transpose(1, 0, 3, 2, 4)
+    direct = whitener[:, None, None, :, None] * drive.reshape(samples, k, 1, -1)
+    by_equation[:, :, :, n_x:] = direct
 
 
 def _sensitivities(A: FloatArray, drive: FloatArray) -> FloatArray:

@@ -137,11 +137,11 @@ class CorrelationRealisation:
         fitter: _Fitter,
         record: VaryingRecord,
     ) -> tuple[Realisation, int]:
-        """Corrections while each takes at least 1 % off the root mean square of the output error."""
+        """Corrections while each takes at least 1 % off the output error; an order not given is taken anew each time."""
         best, errors = first, _errors(first.matrices, record)
         for count in range(self.corrections):
             source = SummedSubMarkov(ExactSubMarkov(*best.matrices), fitter.fit(errors))
-            trial = self._realised(source, bases, depths, first.order)
+            trial = self._realised(source, bases, depths, self.order)
             after = _errors(trial.matrices, record)
             if not np.linalg.norm(after) < 0.99 * np.linalg.norm(errors):
                 return best, count
@@ -194,13 +194,13 @@ def _errors(matrices: Matrices, record: VaryingRecord) -> FloatArray:
 
 
 def _words_within(record: VaryingRecord, word_length: int) -> int:
-    """The longest words, up to 2 · word_length + 1 letters, that make no more regressors than a quarter of the samples."""
+    """Letters of the longest words, at most 2 · word_length + 1, with four samples for each regressor."""
     k, n_u = record.scheduling.shape[1] + 1, record.input.shape[1]
     for longest in range(2 * word_length + 1, 2, -1):
         if 4 * n_u * sum(k**length for length in range(1, longest + 1)) <= len(record):
             return longest
     raise NotIdentifiableError(
-        f"{len(record)} samples are too few for least squares with {k - 1} scheduling signals and {n_u} inputs: words of"
-        f" three letters make {n_u * (k + k**2 + k**3)} regressors; record four times as many samples as regressors",
+        f"{len(record)} samples are too few for least squares with {k - 1} scheduling signals and {n_u} inputs:"
+        f" words of three letters make {n_u * (k + k**2 + k**3)} regressors; record four times as many samples as regressors",
         "scheduling",
     )
