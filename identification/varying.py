@@ -142,21 +142,44 @@ def periodicity(record: VaryingRecord, tolerance: float = TOLERANCE) -> Periodic
     for name, error in errors.items():
         if error > tolerance:
             raise MisuseError(_not_repeated(record, name, period, error, tolerance), name)
-    p = record.scheduling[: 2 * period]
-    divisors = (d for d in range(1, period + 1) if period % d == 0)
-    shortest = next(d for d in divisors if repetition_error(p, d) <= max(tolerance, errors["scheduling"]))
+    shortest = _shortest(record.scheduling, period, max(tolerance, errors["scheduling"]))
     return Periodicity(period, shortest, max(errors.values()))
+
+
+def scheduling_period(record: VaryingRecord, tolerance: float = TOLERANCE) -> int:
+    """The period T of p(t) in samples where the input need not be periodic; 1 for constant scheduling.
+
+    Raises MisuseError, saying how far off it is, when the scheduling does not repeat itself.
+    """
+    if record.period is None:
+        found = common_period(record.scheduling)
+        if found is None:
+            raise MisuseError(_nothing_found(record, "scheduling"), "scheduling")
+        return found
+    error = repetition_error(record.scheduling, record.period)
+    if error > tolerance:
+        raise MisuseError(_not_repeated(record, "scheduling", record.period, error, tolerance), "scheduling")
+    return _shortest(record.scheduling, record.period, max(tolerance, error))
+
+
+def _shortest(scheduling: FloatArray, period: int, tolerance: float) -> int:
+    p = scheduling[: 2 * period]
+    divisors = (d for d in range(1, period + 1) if period % d == 0)
+    return next(d for d in divisors if repetition_error(p, d) <= tolerance)
+
+
+def _nothing_found(record: VaryingRecord, name: str) -> str:
+    return (
+        f"the {name} does not repeat itself within half the record of {len(record)} samples; play whole periods, or"
+        " state the period to learn how far off it is"
+    )
 
 
 def _found_period(record: VaryingRecord) -> int:
     found = {name: common_period(getattr(record, name)) for name in ("input", "scheduling")}
     for name, period in found.items():
         if period is None:
-            raise MisuseError(
-                f"the {name} does not repeat itself within half the record of {len(record)} samples; play whole"
-                " periods, or state the period to learn how far off it is",
-                name,
-            )
+            raise MisuseError(_nothing_found(record, name), name)
     of_input, of_scheduling = int(found["input"] or 1), int(found["scheduling"] or 1)
     together = lcm(of_input, of_scheduling)
     if 2 * together > len(record):

@@ -1,0 +1,232 @@
+"""Maximum likelihood of an affine state-space model from synchronised periodic data, in the frequency domain."""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Annotated
+
+import numpy as np
+from scipy.special import chdtrc
+
+from identification.affine_estimate import AffineEstimate
+from identification.affine_state_space import AffineStateSpace
+from identification.arrays import BoolArray, ComplexArray, FloatArray
+from identification.errors import MisuseError, NotIdentifiableError, RangeError, ShapeError
+from identification.least_squares import LeastSquaresSolution, levenberg_marquardt
+from identification.lpv.affine_parameters import AffineSizes, balanced
+from identification.lpv.harmonic_blocks import HarmonicBlocks
+from identification.lpv.harmonic_noise import HarmonicNoise, Whitening, harmonic_noise
+from identification.lpv.input_affine_start import input_affine_start
+from identification.outcome import Outcome, TestResult
+from identification.response_tests import variance_inflation
+from identification.varying import TOLERANCE, SteadyPeriods, VaryingRecord, steady_periods
+
+CHARTS = 20
+STEPS_IN_A_CHART = 15
+
+
+@dataclass(frozen=True, eq=False)
+class PeriodicResiduals:
+    """Whitened deviations between the spectrum of the mean period and that of a model [Goos2014, (27)].
+
+        r(θ) = C_e^{−1/2} (Y(θ) − Ȳ),   V_ML = ‖r‖²,   J = ∂r/∂θ
+
+    r (R,) has unit variance for the true θ; J (R, size) has n_x² directions in which nothing changes.
+    """
+
+    blocks: HarmonicBlocks
+    measured: ComplexArray
+    noise: HarmonicNoise
+    used: BoolArray
+
+    @classmethod
+    def of(cls, steady: SteadyPeriods, order: int, zero_frequency: bool = True) -> "PeriodicResiduals":
+        """From steady periods, for models with n_x = `order`."""
+        sizes = AffineSizes(order, steady.scheduling.shape[1], steady.input.shape[1], steady.output.shape[2])
+        blocks = HarmonicBlocks(sizes, steady.input, steady.scheduling, steady.periodicity.scheduling_period)
+        spectrum = np.fft.fft(steady.output.mean(axis=0), axis=0)[blocks.lines]
+        return cls(blocks, spectrum, harmonic_noise(steady), (blocks.lines > 0) | zero_frequency)
+
+    @cached_property
+    def real(self) -> BoolArray:
+        """Which of the used lines are those at zero or at the Nyquist frequency."""
+        lines = self.blocks.lines[self.used]
+        return np.asarray((lines == 0) | (2 * lines == self.blocks.period))
+
+    @cached_property
+    def _whitening(self) -> Whitening:
+        return Whitening.of(self.noise.covariance[self.blocks.lines[self.used]], self.real)
+
+    @cached_property
+    def deviation(self) -> FloatArray:
+        """Root of the mean noise variance over the outputs at each line, (F,)."""
+        variances = np.einsum("fyy->f", self.noise.covariance[self.blocks.lines].real)
+        return np.asarray(np.sqrt(variances / self.measured.shape[1]))
+
+    def residual(self, theta: FloatArray) -> FloatArray:
+        """r (R,)."""
+        difference = (self.blocks.output(theta) - self.measured)[self.used]
+        return self._whitening(difference[:, :, None])[:, 0]
+
+    def __call__(self, theta: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """r (R,) and J (R, size)."""
+        output, jacobian = self.blocks.output_and_jacobian(theta)
+        columns = np.concatenate([(output - self.measured)[:, :, None], jacobian], axis=2)[self.used]
+        white = self._whitening(columns)
+        return white[:, 0], white[:, 1:]
+
+
+@dataclass(frozen=True)
+class PeriodicLikelihood:
+    """Maximum likelihood of A_i, B_i, C_i, D_i from a record with periodic, synchronised input and scheduling.
+
+        θ̂ = arg min (Y(θ) − Ȳ)* C_e⁻¹ (Y(θ) − Ȳ)      [Goos2014, (27)]
+
+    Assumes noise on the output only, white or coloured, and a steady state. Ȳ is the spectrum of the mean period, C_e
+    the noise covariance from the lines between the harmonics. All matrices are free; each search runs in a chart
+    θ = θ_c + Q δ perpendicular to the changes of the state basis, and the chart is renewed until nothing is gained.
+    The model is stable over a scheduling period. P_θ is the Cramér–Rao bound ν/(ν − 2) Q (QᵀJᵀJQ)⁻¹ Qᵀ, corrected for
+    the ν degrees of freedom of the noise estimate. Without a `start` it begins at the best linear time-invariant
+    approximation with the extended input [Goos2014, Section 3.3].
+    """
+
+    drop_periods: Annotated[
+        int | None, "leading periods left out as transient; found from the record when not given"
+    ] = None
+    tolerance: Annotated[float, "largest repetition error of input and scheduling, relative to their variation"] = (
+        TOLERANCE
+    )
+    zero_frequency: Annotated[bool, "use the line at zero frequency (the output has no offset)"] = True
+    max_charts: Annotated[int, "how often the chart of parameters is renewed at most"] = CHARTS
+
+    def __post_init__(self) -> None:
+        if self.drop_periods is not None and self.drop_periods < 0:
+            raise RangeError(f"drop_periods is {self.drop_periods}; it must be zero or more", "drop_periods")
+        if self.max_charts < 1:
+            raise RangeError(f"max_charts is {self.max_charts}; it must be one or more", "max_charts")
+
+    def estimate(self, record: VaryingRecord, order: int, start: AffineStateSpace | None = None) -> AffineEstimate:
+        """The model of order n_x of a record, with its covariance.
+
+        Raises MisuseError when the record is not periodic, not synchronised or too short (see `steady_periods`),
+        NotIdentifiableError when its lines cannot determine so many parameters, ShapeError when the start does not fit.
+        Excitation of too low a rank gives the outcome "not_identifiable" and no covariance.
+        """
+        steady = steady_periods(record, self.drop_periods, self.tolerance)
+        return self.estimate_steady(steady, order, record.sample_time, start, record)
+
+    def estimate_steady(
+        self,
+        steady: SteadyPeriods,
+        order: int,
+        sample_time: float,
+        start: AffineStateSpace | None = None,
+        record: VaryingRecord | None = None,
+    ) -> AffineEstimate:
+        """As `estimate`, from steady periods; `record` only gives the declared scheduling variables."""
+        if order < 1:
+            raise RangeError(f"the order is {order}; it must be one or more", "order")
+        residuals = PeriodicResiduals.of(steady, order, self.zero_frequency)
+        sizes = residuals.blocks.sizes
+        _require_enough(residuals)
+        starts = _starts(residuals, sample_time) if start is None else [_fitting(start, sizes)]
+        solution, chart = self._search(residuals, starts)
+        variables = record.variables if record is not None else ()
+        model = sizes.model(solution.x, sample_time, variables)
+        if solution.outcome.status == "not_identifiable":
+            return AffineEstimate(model, solution.outcome, ())
+        inflation = variance_inflation(residuals.noise.degrees_of_freedom)
+        covariance = inflation * chart @ replace(solution, jacobian=solution.jacobian @ chart).covariance @ chart.T
+        return AffineEstimate(model, solution.outcome, (_lack_of_fit(residuals, solution),), covariance)
+
+    def _search(
+        self, residuals: PeriodicResiduals, starts: list[AffineStateSpace]
+    ) -> tuple[LeastSquaresSolution, FloatArray]:
+        """The best solution over the starts, in θ with J (R, size), and its chart Q."""
+        best: tuple[LeastSquaresSolution, FloatArray] | None = None
+        for start in starts:
+            found = minimised(residuals, residuals.blocks.sizes.join(_matrices(balanced(start))), self.max_charts)
+            if best is None or found[0].cost < best[0].cost:
+                best = found
+            if found[0].outcome.ok and _lack_of_fit(residuals, found[0]).p_value > 1e-6:
+                break
+        assert best is not None
+        return best
+
+
+def minimised(
+    residuals: PeriodicResiduals, theta: FloatArray, max_charts: int = CHARTS
+) -> tuple[LeastSquaresSolution, FloatArray]:
+    """The minimum that a search from θ (size,) reaches, with J (R, size) there, and the last chart Q (size, free)."""
+    sizes, iterations = residuals.blocks.sizes, 0
+    for _ in range(max_charts):
+        chart, centre = sizes.chart(theta), theta
+
+        def evaluate(
+            delta: FloatArray, chart: FloatArray = chart, centre: FloatArray = centre
+        ) -> tuple[FloatArray, FloatArray]:
+            residual, jacobian = residuals(centre + chart @ delta)
+            return residual, jacobian @ chart
+
+        def feasible(delta: FloatArray, chart: FloatArray = chart, centre: FloatArray = centre) -> bool:
+            return residuals.blocks.stable(centre + chart @ delta)
+
+        solution = levenberg_marquardt(evaluate, np.zeros(chart.shape[1]), feasible, STEPS_IN_A_CHART, 1e-7)
+        theta = centre + chart @ solution.x
+        iterations += solution.outcome.iterations
+        if solution.outcome.ok or solution.outcome.iterations < STEPS_IN_A_CHART:
+            break
+    jacobian = residuals(theta)[1]
+    outcome = Outcome(solution.outcome.status, solution.outcome.advice, iterations)
+    return LeastSquaresSolution(theta, solution.residual, jacobian, outcome), sizes.chart(theta)
+
+
+def _starts(residuals: PeriodicResiduals, sample_time: float) -> list[AffineStateSpace]:
+    """Models with A_i = 0, i > 0, from a small and a large number of block rows."""
+    found: list[AffineStateSpace] = []
+    trouble: NotIdentifiableError | None = None
+    order = residuals.blocks.sizes.order
+    for rows in (order + 2, 2 * order + 4, order + 1):
+        try:
+            found.append(
+                input_affine_start(residuals.blocks, residuals.measured, residuals.deviation, rows, sample_time)
+            )
+        except NotIdentifiableError as error:
+            trouble = error
+    if not found and trouble is not None:
+        raise trouble
+    return found
+
+
+def _fitting(start: AffineStateSpace, sizes: AffineSizes) -> AffineStateSpace:
+    if AffineSizes.of(start) != sizes:
+        raise ShapeError(f"the start has the sizes {AffineSizes.of(start)}, the record needs {sizes}", "start")
+    return start
+
+
+def _matrices(model: AffineStateSpace) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    return model.a, model.b, model.c, model.d
+
+
+def _require_enough(residuals: PeriodicResiduals) -> None:
+    sizes, lines = residuals.blocks.sizes, residuals.blocks.lines
+    rows = residuals.blocks.period * sizes.n_outputs
+    if rows <= sizes.free:
+        raise NotIdentifiableError(
+            f"the {len(lines)} lines of the period give {rows} real numbers for {sizes.free} parameters; choose a"
+            " longer period or a lower order",
+            "period",
+        )
+    if not abs(residuals.blocks.input).max() > 0:
+        raise MisuseError("the input is zero at every sample; check the recording and its channels", "input")
+
+
+def _lack_of_fit(residuals: PeriodicResiduals, solution: LeastSquaresSolution) -> TestResult:
+    """χ² test of ‖r‖²; |e_k|² ~ F(2, 2ν) is turned into ν ln(1 + |e_k|²/ν), which is χ²(2)/2, and alike at real lines."""
+    nu = residuals.noise.degrees_of_freedom
+    real = np.repeat(residuals.real, residuals.measured.shape[1])
+    power = solution.residual[: len(real)] ** 2
+    power[~real] += solution.residual[len(real) :] ** 2
+    freedom = np.where(real, nu, 2.0 * nu)
+    statistic = float(np.sum(freedom * np.log1p(power / freedom)))
+    free = len(solution.residual) - residuals.blocks.sizes.free
+    return TestResult("lack of fit", statistic, float(free), float(chdtrc(free, statistic)))
