@@ -5,29 +5,24 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.linalg import solve_triangular
 
+from identification.affine_estimate import AffineEstimate
 from identification.affine_state_space import AffineStateSpace, Matrices, frozen_matrices, propagate
 from identification.arrays import FloatArray
 from identification.errors import NotIdentifiableError, ShapeError
 from identification.least_squares import levenberg_marquardt
+from identification.lpv.affine_parameters import AffineSizes
 from identification.outcome import Outcome
 from identification.varying import VaryingRecord
 
 ROUNDS = 4
 
 
-@dataclass(frozen=True, eq=False)
-class OutputErrorEstimate:
-    """A model, the covariance of its entries, the covariance Σ_w (n_y, n_y) of the noise, and the errors (N, n_y).
+@dataclass(frozen=True, eq=False, kw_only=True)
+class OutputErrorEstimate(AffineEstimate):
+    """With the covariance Σ_w (n_y, n_y) of the noise and the errors y − ŷ (N, n_y)."""
 
-    `covariance` (n_θ, n_θ): of θ = vec [A_k B_k; C_k D_k], matrix after matrix and row by row, in the coordinates of
-    this model; zero along the n_x² directions of a change of state coordinates.
-    """
-
-    model: AffineStateSpace
-    covariance: FloatArray
     noise_covariance: FloatArray
     errors: FloatArray
-    outcome: Outcome
 
 
 def output_error(start: AffineStateSpace, record: VaryingRecord, max_iterations: int = 30) -> OutputErrorEstimate:
@@ -45,8 +40,8 @@ def output_error(start: AffineStateSpace, record: VaryingRecord, max_iterations:
     floor = 1e-20 * np.maximum(np.mean(record.output**2, axis=0), np.finfo(float).tiny)
     errors = record.output - _simulated(_matrices(model), record)[1]
     for _ in range(ROUNDS):
-        problem = _Problem(_matrices(model), record, errors.T @ errors / len(errors) + np.diag(floor), floor)
-        solution = levenberg_marquardt(problem.evaluate, np.zeros(problem.free), None, max_iterations, 1e-4)
+        problem = _Problem(model, record, errors.T @ errors / len(errors) + np.diag(floor), floor)
+        solution = levenberg_marquardt(problem.evaluate, np.zeros(problem.sizes.free), None, max_iterations, 1e-4)
         iterations += solution.outcome.iterations
         a, b, c, d = problem.matrices(solution.x)
         model = replace(model, a=a, b=b, c=c, d=d)
@@ -55,9 +50,12 @@ def output_error(start: AffineStateSpace, record: VaryingRecord, max_iterations:
             break
         if np.all(np.mean(errors**2, axis=0) < floor):
             break
-    covariance = problem.basis @ solution.covariance @ problem.basis.T
+    covariance: FloatArray | None = problem.chart @ solution.covariance @ problem.chart.T
     outcome = Outcome(solution.outcome.status, solution.outcome.advice, iterations)
-    return OutputErrorEstimate(model, covariance, errors.T @ errors / len(errors), errors, outcome)
+    if outcome.status == "not_identifiable":
+        covariance = None
+    noise = errors.T @ errors / len(errors)
+    return OutputErrorEstimate(model, outcome, (), covariance, noise_covariance=noise, errors=errors)
 
 
 def _require_fit(start: AffineStateSpace, record: VaryingRecord) -> None:
@@ -68,7 +66,7 @@ def _require_fit(start: AffineStateSpace, record: VaryingRecord) -> None:
             f"the model has {widths} inputs, outputs and scheduling signals, the record {given}; give the same",
             "record",
         )
-    parameters = sum(each.size for each in _matrices(start))
+    parameters = AffineSizes.of(start).size
     if record.output.size <= parameters:
         raise NotIdentifiableError(
             f"{record.output.size} values of the output cannot determine {parameters} parameters; record longer or"
@@ -93,73 +91,57 @@ def _simulated(matrices: Matrices, record: VaryingRecord) -> tuple[FloatArray, F
 class _Problem:
     """Whitened errors and their derivative with respect to β, θ = θ_start + Q β."""
 
-    def __init__(self, matrices: Matrices, record: VaryingRecord, noise: FloatArray, floor: FloatArray) -> None:
-        self.n_x = matrices[0].shape[1]
-        self.start = _joined(matrices)
-        self.basis = _transverse(matrices)
-        self.free = self.basis.shape[1]
-        self.record, self.root = record, np.linalg.cholesky(noise)
+    def __init__(self, start: AffineStateSpace, record: VaryingRecord, noise: FloatArray, floor: FloatArray) -> None:
+        self.sizes = AffineSizes.of(start)
+        self.start = self.sizes.join(_matrices(start))
+        self.chart = self.sizes.chart(self.start)
+        self.record, self.root = record, np.linalg.cholesky(noise).astype(np.float64)
         # One constant residual of the size of rounding, so that the search ends when only rounding is left.
         self.rounding = float(np.sqrt(len(record) * np.sum(floor / np.diag(noise))))
 
     def matrices(self, beta: FloatArray) -> Matrices:
         """A, B, C, D at β."""
-        joined = self.start + (self.basis @ beta).reshape(self.start.shape)
-        n = self.n_x
-        return joined[:, :n, :n], joined[:, :n, n:], joined[:, n:, :n], joined[:, n:, n:]
+        return self.sizes.split(self.start + self.chart @ beta)
 
     def evaluate(self, beta: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Qᵀr and Qᵀ ∂r/∂β (free + …,), Q from a triangular factor of both; infinite where the model blows up.
+        """Zᵀr (n_θ + 2,) and Zᵀ ∂r/∂β, Z from a triangular factor of both; infinite where the model blows up.
 
-        The long residual itself is not needed: its norm and the projections on the derivatives are kept by Qᵀ.
+        The long residual itself is not needed: its norm and the projections on the derivatives are kept by Zᵀ.
         """
         matrices, record = self.matrices(beta), self.record
         x, output = _simulated(matrices, record)
-        columns = self.basis.shape[0] + 1
+        columns, free = self.sizes.size + 1, self.sizes.free
+        residual, jacobian = np.full(columns + 1, self.rounding), np.zeros((columns + 1, free))
         if not np.all(np.isfinite(output)) or abs(output).max() > 1e6 * abs(record.output).max():
-            return np.full(columns + 1, np.inf), np.zeros((columns + 1, self.free))
+            return np.full(columns + 1, np.inf), jacobian
         stacked = np.empty((output.size, columns))
-        states_and_inputs = np.concatenate([x, record.input], axis=1)
-        _fill_gradient(stacked[:, :-1], matrices, record.scheduling, states_and_inputs, self.root)
+        _fill_gradient(stacked[:, :-1], matrices, record, x, self.root)
         stacked[:, -1] = solve_triangular(self.root, (record.output - output).T, lower=True).ravel()
-        factor = np.linalg.qr(stacked, mode="r")
-        residual, jacobian = np.full(columns + 1, self.rounding), np.zeros((columns + 1, self.free))
+        factor: FloatArray = np.asarray(np.linalg.qr(stacked, mode="r"))
         residual[: len(factor)], residual[len(factor) : -1] = factor[:, -1], 0.0
-        jacobian[: len(factor)] = -factor[:, :-1] @ self.basis
+        jacobian[: len(factor)] = -factor[:, :-1] @ self.chart
         return residual, jacobian
 
 
-def _joined(matrices: Matrices) -> FloatArray:
-    A, B, C, D = matrices
-    return np.concatenate([np.concatenate([A, B], axis=2), np.concatenate([C, D], axis=2)], axis=1)
-
-
-def _transverse(matrices: Matrices) -> FloatArray:
-    """Orthonormal complement of the tangent of similarity at θ, (n_θ, n_θ − n_x²)."""
-    A, B, C, D = matrices
-    n = A.shape[1]
-    columns = []
-    for unit in np.eye(n * n).reshape(-1, n, n):
-        columns.append(_joined((A @ unit - unit @ A, -unit @ B, C @ unit, np.zeros_like(D))).ravel())
-    u, values, _ = np.linalg.svd(np.array(columns).T, full_matrices=True)
-    return np.asarray(u[:, int(np.sum(values > 1e-10 * values[0])) :])
-
-
 def _fill_gradient(
-    found: FloatArray, matrices: Matrices, scheduling: FloatArray, signal: FloatArray, root: FloatArray
+    found: FloatArray, matrices: Matrices, record: VaryingRecord, x: FloatArray, root: FloatArray
 ) -> None:
     """Σ_w^{-½} ∂ŷ/∂θ into `found` (n_y N, n_θ), from the sensitivities of the state to a pulse in each equation."""
-    k, n_x, n_y, samples = len(matrices[0]), matrices[0].shape[1], matrices[2].shape[1], len(signal)
-    a, _, c, _ = frozen_matrices(matrices, scheduling)
-    psi = np.concatenate([np.ones((samples, 1)), scheduling], axis=1)
-    drive = (psi[:, :, None] * signal[:, None, :]).reshape(samples, -1)
+    n_y, samples, n = record.output.shape[1], len(x), x.shape[1]
+    a, _, c, _ = frozen_matrices(matrices, record.scheduling)
+    psi = np.concatenate([np.ones((samples, 1)), record.scheduling], axis=1)
+    drive = psi[:, :, None] * np.concatenate([x, record.input], axis=1)[:, None, :]
     whitener = solve_triangular(root, np.eye(n_y), lower=True)
-    by_equation = found.reshape(n_y, samples, k, n_x + n_y, signal.shape[1])
-    sensitivity = _sensitivities(a, drive).reshape(samples, n_x, -1)
-    through_state = ((whitener @ c) @ sensitivity).reshape(samples, n_y, n_x, k, -1)
-    by_equation[:, :, :, :n_x] = through_state.transpose(1, 0, 3, 2, 4)
-    direct = whitener[:, None, None, :, None] * drive.reshape(samples, k, 1, -1)
-    by_equation[:, :, :, n_x:] = direct
+    sensitivity = _sensitivities(a, drive.reshape(samples, -1)).reshape(samples, n, -1)
+    # Axes: output, sample, basis function, equation, state or input.
+    by_output = ((whitener @ c) @ sensitivity).reshape(samples, n_y, n, *drive.shape[1:])
+    through = by_output.transpose(1, 0, 3, 2, 4)
+    direct = whitener[:, None, None, :, None] * drive[:, :, None, :]
+    parts = [part[..., cut] for part in (through, direct) for cut in (slice(n), slice(n, None))]
+    place = 0
+    for part, stack in zip(parts, matrices, strict=True):
+        found[:, place : place + stack.size].reshape(n_y, samples, *stack.shape)[...] = part
+        place += stack.size
 
 
 def _sensitivities(A: FloatArray, drive: FloatArray) -> FloatArray:

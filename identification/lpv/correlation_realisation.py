@@ -5,7 +5,8 @@ from typing import Annotated, Literal, Protocol
 
 import numpy as np
 
-from identification.affine_state_space import AffineStateSpace, Matrices, simulate_matrices
+from identification.affine_estimate import AffineEstimate
+from identification.affine_state_space import Matrices, simulate_matrices
 from identification.arrays import FloatArray
 from identification.correlation_analysis import WhiteExcitation
 from identification.correlation_assumptions import (
@@ -16,7 +17,7 @@ from identification.correlation_assumptions import (
 )
 from identification.errors import MisuseError, NotIdentifiableError, RangeError
 from identification.ho_kalman import Realisation, full_realisation, largest_entries, reduced_realisation
-from identification.outcome import Outcome, TestResult
+from identification.outcome import Outcome
 from identification.output_error import output_error
 from identification.sub_markov import BasisSelection, ExactSubMarkov, SubMarkovSource, SummedSubMarkov, every_word
 from identification.sub_markov_least_squares import WordRegression
@@ -25,26 +26,22 @@ from identification.varying import VaryingRecord
 NOISE_FREE = 1e-5
 
 
-@dataclass(frozen=True, eq=False)
-class CorrelationEstimate:
-    """A model from a varying experiment, and what it stands on.
+@dataclass(frozen=True, eq=False, kw_only=True)
+class CorrelationEstimate(AffineEstimate):
+    """With tests of the assumptions A1–A3, and what the model stands on.
 
-    `singular_values` of the Hankel matrix of the first realisation; `rows`, `columns`: the bases selected;
-    `corrections`: how many were made; `covariance` (n_θ, n_θ) of the entries of the model, see
-    `identification.output_error`, and `noise_covariance` (n_y, n_y): None without refinement; `tests` of the
-    assumptions A1–A3; `warnings`: those that the data break; `parameters`: how the sub-Markov parameters were found.
+    `warnings`: the assumptions that the data break; `parameters`: how the sub-Markov parameters were found;
+    `singular_values` of the Hankel matrix of the last realisation; `rows`, `columns`: the bases selected;
+    `corrections`: how many were made; `noise_covariance` Σ_w (n_y, n_y): None, like the covariance of the model,
+    without refinement.
     """
 
-    model: AffineStateSpace
-    outcome: Outcome
-    tests: tuple[TestResult, ...]
     warnings: tuple[str, ...]
     parameters: Literal["correlation", "least_squares"]
     singular_values: FloatArray
     rows: BasisSelection
     columns: BasisSelection
     corrections: int
-    covariance: FloatArray | None
     noise_covariance: FloatArray | None
 
 
@@ -63,7 +60,6 @@ class CorrelationRealisation:
     leave e only as that noise; they go on while e decreases. A refinement maximises the likelihood from there.
     """
 
-    order: Annotated[int | None, "state dimension; none takes it from the singular values"] = None
     parameters: Annotated[
         Literal["automatic", "correlation", "least_squares"],
         "how sub-Markov parameters are found; automatic tests whether correlation applies",
@@ -86,85 +82,28 @@ class CorrelationRealisation:
         for name, lowest in least.items():
             if getattr(self, name) < lowest:
                 raise RangeError(f"{name} is {getattr(self, name)}; it must be at least {lowest}", name)
-        if self.order is not None and self.order < 1:
-            raise RangeError(f"the order is {self.order}; it must be at least 1", "order")
 
-    def estimate(self, record: VaryingRecord) -> CorrelationEstimate:
-        """The model of a record with varying scheduling that starts from rest.
+    def estimate(self, record: VaryingRecord, order: int | None = None) -> CorrelationEstimate:
+        """The model of a record that starts from rest; without `order` n_x is taken from the singular values.
 
         Input and scheduling may be anything for least squares; correlation needs both white (A2, A3), which is tested.
-        Raises NotIdentifiableError when scheduling or input are not rich enough for the words or the record too short,
-        RangeError for bases that the Hankel matrix does not have.
+        Raises NotIdentifiableError when scheduling or input are not rich enough for the words, the record is too short,
+        or the order is above the rank of the Hankel matrix; RangeError for an order that is not positive.
         """
+        if order is not None and order < 1:
+            raise RangeError(f"the order is {order}; it must be one or more", "order")
         psi = np.concatenate([np.ones((len(record), 1)), record.scheduling], axis=1)
         tests = signal_tests(psi, record.input)
         white = self.parameters == "correlation" or (self.parameters == "automatic" and correlation_applies(tests))
-        longest = _words_within(record, self.word_length)
-        fitter: _Fitter = WhiteExcitation(psi, record.input) if white else WordRegression(psi, record.input, longest)
-        depths = (self.word_length, self.word_length) if white else ((longest - 1) // 2, longest // 2)
-        bases, first = self._first(fitter.fit(record.output), depths)
-        found, corrections = self._corrected(first, bases, depths, fitter, record)
-        return self._described(record, found, first, bases, corrections, tests, white)
-
-    def _first(
-        self, source: SubMarkovSource, depths: tuple[int, int]
-    ) -> tuple[tuple[BasisSelection, BasisSelection], Realisation]:
-        k, n_y, n_u = source.direct().shape
-        rows, columns = every_word(max(depths[0], 1), k, n_y), every_word(max(depths[1], 1), k, n_u)
-        if self.hankel == "reduced":
-            at_rows, at_columns = largest_entries(
-                source.hankel(rows, columns), min(self.rows, len(rows)), min(self.columns, len(columns))
-            )
-            rows, columns = rows.subset(at_rows), columns.subset(at_columns)
-        return (rows, columns), self._realised(source, (rows, columns), depths, self.order)
-
-    def _realised(
-        self,
-        source: SubMarkovSource,
-        bases: tuple[BasisSelection, BasisSelection],
-        depths: tuple[int, int],
-        order: int | None,
-    ) -> Realisation:
-        if self.hankel == "full":
-            return full_realisation(source, depths, order)
-        return reduced_realisation(source, *bases, order)
-
-    def _corrected(
-        self,
-        first: Realisation,
-        bases: tuple[BasisSelection, BasisSelection],
-        depths: tuple[int, int],
-        fitter: _Fitter,
-        record: VaryingRecord,
-    ) -> tuple[Realisation, int]:
-        """Corrections while each takes at least 1 % off the output error; an order not given is taken anew each time."""
-        best, errors = first, _errors(first.matrices, record)
-        for count in range(self.corrections):
-            source = SummedSubMarkov(ExactSubMarkov(*best.matrices), fitter.fit(errors))
-            trial = self._realised(source, bases, depths, self.order)
-            after = _errors(trial.matrices, record)
-            if not np.linalg.norm(after) < 0.99 * np.linalg.norm(errors):
-                return best, count
-            best, errors = trial, after
-        return best, self.corrections
-
-    def _described(
-        self,
-        record: VaryingRecord,
-        found: Realisation,
-        first: Realisation,
-        bases: tuple[BasisSelection, BasisSelection],
-        corrections: int,
-        tests: tuple[TestResult, ...],
-        white: bool,
-    ) -> CorrelationEstimate:
-        model = found.model(record.sample_time, record.variables)
-        errors, outcome = _errors(found.matrices, record), Outcome("converged", "", corrections)
-        covariance = noise_covariance = None
-        if self.refinement:
+        realising = self._by_correlation(psi, record, order) if white else self._by_least_squares(psi, record, order)
+        bases, first = realising.first(record.output, (self.rows, self.columns))
+        found, corrections = realising.corrected(first, bases, record, self.corrections)
+        model, outcome = found.model(record.sample_time, record.variables), Outcome("converged", "", corrections)
+        errors, covariance, noise = _errors(found.matrices, record), None, None
+        if self.refinement and np.all(np.isfinite(errors)):
             refined = output_error(model, record)
             model, outcome, errors = refined.model, refined.outcome, refined.errors
-            covariance, noise_covariance = refined.covariance, refined.noise_covariance
+            covariance, noise = refined.covariance, refined.noise_covariance
         if not np.all(np.isfinite(errors)):
             advice = "the model is unstable along this scheduling; choose another order or allow corrections"
             outcome = Outcome("not_converged", advice, corrections)
@@ -174,19 +113,86 @@ class CorrelationRealisation:
             model,
             outcome,
             tests,
-            broken_assumptions(tests, white),
-            "correlation" if white else "least_squares",
-            first.singular_values,
-            *bases,
-            corrections,
             covariance,
-            noise_covariance,
+            warnings=broken_assumptions(tests, white),
+            parameters="correlation" if white else "least_squares",
+            singular_values=found.singular_values,
+            rows=bases[0],
+            columns=bases[1],
+            corrections=corrections,
+            noise_covariance=noise,
         )
+
+    def _by_correlation(self, psi: FloatArray, record: VaryingRecord, order: int | None) -> "_Realising":
+        depths = self.word_length, self.word_length
+        return _Realising(WhiteExcitation(psi, record.input), depths, self.hankel == "full", order)
+
+    def _by_least_squares(self, psi: FloatArray, record: VaryingRecord, order: int | None) -> "_Realising":
+        longest = _words_within(record, self.word_length)
+        full = self.hankel == "full"
+        depths = (longest - 2, 2) if full and longest < 4 else ((longest - 1) // 2, longest // 2)
+        return _Realising(WordRegression(psi, record.input, longest), depths, full, order)
 
     @classmethod
     def example(cls) -> "CorrelationRealisation":
         """A small one, for the conformance tests."""
-        return cls(order=1, rows=4, columns=4)
+        return cls(rows=4, columns=4)
+
+
+Bases = tuple[BasisSelection, BasisSelection]
+
+
+@dataclass(frozen=True)
+class _Realising:
+    """How sub-Markov parameters are fitted and realised; `depths`: letters of the longest rows and columns."""
+
+    fitter: _Fitter
+    depths: tuple[int, int]
+    full: bool
+    order: int | None
+
+    def first(self, output: FloatArray, sizes: tuple[int, int]) -> tuple[Bases, Realisation]:
+        """The bases, (n_o, n_r) = `sizes` of them at most, and the realisation of what is found in the output."""
+        source = self.fitter.fit(output)
+        k, n_y, n_u = source.direct().shape
+        rows, columns = every_word(self.depths[0], k, n_y), every_word(self.depths[1], k, n_u)
+        if not self.full:
+            counts = min(sizes[0], len(rows)), min(sizes[1], len(columns))
+            at_rows, at_columns = largest_entries(source.hankel(rows, columns), *counts)
+            rows, columns = rows.subset(at_rows), columns.subset(at_columns)
+        return (rows, columns), self._realised(source, (rows, columns))
+
+    def corrected(self, best: Realisation, bases: Bases, record: VaryingRecord, most: int) -> tuple[Realisation, int]:
+        """Corrections while each takes 1 % off the output error; an order that is not given is taken anew."""
+        if most == 0:
+            return best, 0
+        best, errors = _tamed(best, record)
+        for count in range(most):
+            source = SummedSubMarkov(ExactSubMarkov(*best.matrices), self.fitter.fit(errors))
+            trial = self._realised(source, bases)
+            after = _errors(trial.matrices, record)
+            if not np.linalg.norm(after) < 0.99 * np.linalg.norm(errors):
+                return best, count
+            best, errors = trial, after
+        return best, most
+
+    def _realised(self, source: SubMarkovSource, bases: Bases) -> Realisation:
+        if self.full:
+            return full_realisation(source, self.depths, self.order)
+        return reduced_realisation(source, *bases, self.order)
+
+
+def _tamed(found: Realisation, record: VaryingRecord) -> tuple[Realisation, FloatArray]:
+    """The realisation, its A_k made smaller while its output error exceeds twice the output; and that error."""
+    a, b, c, d = found.matrices
+    most = 2 * np.linalg.norm(record.output)
+    for shrink in (1.0, 0.9, 0.8, 0.6, 0.4, 0.2):
+        tamed = Realisation((shrink * a, b, c, d), found.singular_values)
+        errors = _errors(tamed.matrices, record)
+        if np.linalg.norm(errors) <= most:
+            return tamed, errors
+    tamed = Realisation((np.zeros_like(a), b, c, d), found.singular_values)
+    return tamed, _errors(tamed.matrices, record)
 
 
 def _errors(matrices: Matrices, record: VaryingRecord) -> FloatArray:
@@ -201,6 +207,6 @@ def _words_within(record: VaryingRecord, word_length: int) -> int:
             return longest
     raise NotIdentifiableError(
         f"{len(record)} samples are too few for least squares with {k - 1} scheduling signals and {n_u} inputs:"
-        f" words of three letters make {n_u * (k + k**2 + k**3)} regressors; record four times as many samples as regressors",
+        f" words of three letters make {n_u * (k + k**2 + k**3)} regressors; record four times as many samples",
         "scheduling",
     )
