@@ -46,11 +46,11 @@ class AffineEstimate:
     def output_covariance(self, input: FloatArray, scheduling: FloatArray) -> FloatArray:
         """Covariance of the simulated output ŷ(t) along p (N, n_p) for u (N, n_u) from rest, (N, n_y, n_y).
 
-            cov ŷ(t) = S(t) P_θ S(t)ᵀ,   S = ∂ŷ/∂θ from  δx(t+1) = A δx + δA x + δB u,   δy = C δx + δC x + δD u
+        cov ŷ(t) = S(t) P_θ S(t)ᵀ,   S = ∂ŷ/∂θ from  δx(t+1) = A δx + δA x + δB u,   δy = C δx + δC x + δD u
         """
         model, sizes = self.model, AffineSizes.of(self.model)
         directions = _root(self._covariance())
-        a, b, c, d = model.frozen(scheduling)
+        a, b, c, _ = model.frozen(scheduling)
         x = propagate(a, (b @ input[:, :, None])[..., 0], np.zeros(sizes.order))[:-1]
         total = np.zeros((len(input), sizes.n_outputs, sizes.n_outputs))
         for direction in directions.T:

@@ -59,7 +59,7 @@ class AffineSizes:
     def similarity_tangent(self, theta: FloatArray) -> FloatArray:
         """The directions (size, n_x²) of a change of the state basis x' = (I + εE)⁻¹ x [Goos2014, (10)].
 
-            dA_i = A_i E − E A_i,   dB_i = −E B_i,   dC_i = C_i E,   dD_i = 0
+        dA_i = A_i E − E A_i,   dB_i = −E B_i,   dC_i = C_i E,   dD_i = 0
         """
         a, b, c, d = self.split(theta)
         directions = []

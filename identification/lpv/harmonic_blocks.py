@@ -116,7 +116,7 @@ class HarmonicBlocks:
     def output_and_jacobian(self, theta: FloatArray) -> tuple[ComplexArray, ComplexArray]:
         """Y (F, n_y) and ∂Y/∂θ (F, n_y, size).
 
-            ∂Y/∂A_i[a, b] = Γ (zI − A)⁻¹ e_a (μ_i ∗ X)_b,   ∂Y/∂C_i[y, b] = e_y (μ_i ∗ X)_b,   p_i u for B_i and D_i
+        ∂Y/∂A_i[a, b] = Γ (zI − A)⁻¹ e_a (μ_i ∗ X)_b,   ∂Y/∂C_i[y, b] = e_y (μ_i ∗ X)_b,   p_i u for B_i and D_i
         """
         a, b, c, d = self.sizes.split(theta)
         blocks, period = self.block_lines.shape

@@ -1,78 +1,29 @@
 """Maximum likelihood of an affine state-space model from synchronised periodic data, in the frequency domain."""
 
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import Annotated
 
 import numpy as np
-from scipy.special import chdtrc
 
 from identification.affine_estimate import AffineEstimate
 from identification.affine_state_space import AffineStateSpace
-from identification.arrays import BoolArray, ComplexArray, FloatArray
+from identification.arrays import FloatArray
 from identification.errors import MisuseError, NotIdentifiableError, RangeError, ShapeError
 from identification.least_squares import LeastSquaresSolution, levenberg_marquardt
 from identification.lpv.affine_parameters import AffineSizes, balanced
-from identification.lpv.harmonic_blocks import HarmonicBlocks
-from identification.lpv.harmonic_noise import HarmonicNoise, Whitening, harmonic_noise
 from identification.lpv.input_affine_start import input_affine_start
-from identification.outcome import Outcome, TestResult
+from identification.lpv.periodic_residuals import PeriodicResiduals, lack_of_fit
+from identification.lpv.perturbed_starts import perturbed_starts
+from identification.outcome import Outcome
 from identification.response_tests import variance_inflation
+from identification.scheduling import SchedulingVariable
 from identification.varying import TOLERANCE, SteadyPeriods, VaryingRecord, steady_periods
 
 CHARTS = 20
 STEPS_IN_A_CHART = 15
-
-
-@dataclass(frozen=True, eq=False)
-class PeriodicResiduals:
-    """Whitened deviations between the spectrum of the mean period and that of a model [Goos2014, (27)].
-
-        r(θ) = C_e^{−1/2} (Y(θ) − Ȳ),   V_ML = ‖r‖²,   J = ∂r/∂θ
-
-    r (R,) has unit variance for the true θ; J (R, size) has n_x² directions in which nothing changes.
-    """
-
-    blocks: HarmonicBlocks
-    measured: ComplexArray
-    noise: HarmonicNoise
-    used: BoolArray
-
-    @classmethod
-    def of(cls, steady: SteadyPeriods, order: int, zero_frequency: bool = True) -> "PeriodicResiduals":
-        """From steady periods, for models with n_x = `order`."""
-        sizes = AffineSizes(order, steady.scheduling.shape[1], steady.input.shape[1], steady.output.shape[2])
-        blocks = HarmonicBlocks(sizes, steady.input, steady.scheduling, steady.periodicity.scheduling_period)
-        spectrum = np.fft.fft(steady.output.mean(axis=0), axis=0)[blocks.lines]
-        return cls(blocks, spectrum, harmonic_noise(steady), (blocks.lines > 0) | zero_frequency)
-
-    @cached_property
-    def real(self) -> BoolArray:
-        """Which of the used lines are those at zero or at the Nyquist frequency."""
-        lines = self.blocks.lines[self.used]
-        return np.asarray((lines == 0) | (2 * lines == self.blocks.period))
-
-    @cached_property
-    def _whitening(self) -> Whitening:
-        return Whitening.of(self.noise.covariance[self.blocks.lines[self.used]], self.real)
-
-    @cached_property
-    def deviation(self) -> FloatArray:
-        """Root of the mean noise variance over the outputs at each line, (F,)."""
-        variances = np.einsum("fyy->f", self.noise.covariance[self.blocks.lines].real)
-        return np.asarray(np.sqrt(variances / self.measured.shape[1]))
-
-    def residual(self, theta: FloatArray) -> FloatArray:
-        """r (R,)."""
-        difference = (self.blocks.output(theta) - self.measured)[self.used]
-        return self._whitening(difference[:, :, None])[:, 0]
-
-    def __call__(self, theta: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """r (R,) and J (R, size)."""
-        output, jacobian = self.blocks.output_and_jacobian(theta)
-        columns = np.concatenate([(output - self.measured)[:, :, None], jacobian], axis=2)[self.used]
-        white = self._whitening(columns)
-        return white[:, 0], white[:, 1:]
+CANDIDATES = 40
+ACCEPTED_FIT = 1e-4
+BAD_FIT = "the model fits worse than the noise allows; choose a higher order, give another start or drop more periods"
 
 
 @dataclass(frozen=True)
@@ -86,7 +37,8 @@ class PeriodicLikelihood:
     θ = θ_c + Q δ perpendicular to the changes of the state basis, and the chart is renewed until nothing is gained.
     The model is stable over a scheduling period. P_θ is the Cramér–Rao bound ν/(ν − 2) Q (QᵀJᵀJQ)⁻¹ Qᵀ, corrected for
     the ν degrees of freedom of the noise estimate. Without a `start` it begins at the best linear time-invariant
-    approximation with the extended input [Goos2014, Section 3.3].
+    approximation with the extended input [Goos2014, Section 3.3]; where the fit is then worse than the noise allows,
+    models around it are tried too.
     """
 
     drop_periods: Annotated[
@@ -96,6 +48,8 @@ class PeriodicLikelihood:
         TOLERANCE
     )
     zero_frequency: Annotated[bool, "use the line at zero frequency (the output has no offset)"] = True
+    more_starts: Annotated[int, "how often more first models are drawn while the fit is bad"] = 3
+    seed: Annotated[int, "of the generator that draws them"] = 0
     max_charts: Annotated[int, "how often the chart of parameters is renewed at most"] = CHARTS
 
     def __post_init__(self) -> None:
@@ -112,7 +66,7 @@ class PeriodicLikelihood:
         Excitation of too low a rank gives the outcome "not_identifiable" and no covariance.
         """
         steady = steady_periods(record, self.drop_periods, self.tolerance)
-        return self.estimate_steady(steady, order, record.sample_time, start, record)
+        return self.estimate_steady(steady, order, record.sample_time, start, record.variables)
 
     def estimate_steady(
         self,
@@ -120,9 +74,9 @@ class PeriodicLikelihood:
         order: int,
         sample_time: float,
         start: AffineStateSpace | None = None,
-        record: VaryingRecord | None = None,
+        variables: tuple[SchedulingVariable, ...] = (),
     ) -> AffineEstimate:
-        """As `estimate`, from steady periods; `record` only gives the declared scheduling variables."""
+        """As `estimate`, from steady periods; `variables` are the declared scheduling variables, if any."""
         if order < 1:
             raise RangeError(f"the order is {order}; it must be one or more", "order")
         residuals = PeriodicResiduals.of(steady, order, self.zero_frequency)
@@ -130,27 +84,48 @@ class PeriodicLikelihood:
         _require_enough(residuals)
         starts = _starts(residuals, sample_time) if start is None else [_fitting(start, sizes)]
         solution, chart = self._search(residuals, starts)
-        variables = record.variables if record is not None else ()
         model = sizes.model(solution.x, sample_time, variables)
         if solution.outcome.status == "not_identifiable":
             return AffineEstimate(model, solution.outcome, ())
         inflation = variance_inflation(residuals.noise.degrees_of_freedom)
         covariance = inflation * chart @ replace(solution, jacobian=solution.jacobian @ chart).covariance @ chart.T
-        return AffineEstimate(model, solution.outcome, (_lack_of_fit(residuals, solution),), covariance)
+        fit = lack_of_fit(residuals, solution)
+        outcome = solution.outcome
+        if outcome.ok and fit.p_value < ACCEPTED_FIT:
+            outcome = replace(outcome, advice=BAD_FIT)
+        return AffineEstimate(model, outcome, (fit,), covariance)
 
     def _search(
-        self, residuals: PeriodicResiduals, starts: list[AffineStateSpace]
+        self, residuals: PeriodicResiduals, first: list[AffineStateSpace]
     ) -> tuple[LeastSquaresSolution, FloatArray]:
-        """The best solution over the starts, in θ with J (R, size), and its chart Q."""
-        best: tuple[LeastSquaresSolution, FloatArray] | None = None
-        for start in starts:
-            found = minimised(residuals, residuals.blocks.sizes.join(_matrices(balanced(start))), self.max_charts)
+        """The best solution in θ with J (R, size), and its chart Q; more starts are tried while the fit is bad."""
+        thetas = [residuals.blocks.sizes.join(_matrices(balanced(start))) for start in first]
+        best = self._lowest(residuals, thetas, None)
+        generator = np.random.default_rng(self.seed)
+        for _ in range(self.more_starts):
+            if _fits(residuals, best[0]):
+                break
+            best = self._lowest(residuals, perturbed_starts(residuals, thetas[0], CANDIDATES, generator), best)
+        return best
+
+    def _lowest(
+        self,
+        residuals: PeriodicResiduals,
+        thetas: list[FloatArray],
+        best: tuple[LeastSquaresSolution, FloatArray] | None,
+    ) -> tuple[LeastSquaresSolution, FloatArray]:
+        for theta in thetas:
+            found = minimised(residuals, theta, self.max_charts)
             if best is None or found[0].cost < best[0].cost:
                 best = found
-            if found[0].outcome.ok and _lack_of_fit(residuals, found[0]).p_value > 1e-6:
+            if _fits(residuals, found[0]):
                 break
         assert best is not None
         return best
+
+
+def _fits(residuals: PeriodicResiduals, solution: LeastSquaresSolution) -> bool:
+    return lack_of_fit(residuals, solution).p_value > ACCEPTED_FIT
 
 
 def minimised(
@@ -218,15 +193,3 @@ def _require_enough(residuals: PeriodicResiduals) -> None:
         )
     if not abs(residuals.blocks.input).max() > 0:
         raise MisuseError("the input is zero at every sample; check the recording and its channels", "input")
-
-
-def _lack_of_fit(residuals: PeriodicResiduals, solution: LeastSquaresSolution) -> TestResult:
-    """χ² test of ‖r‖²; |e_k|² ~ F(2, 2ν) is turned into ν ln(1 + |e_k|²/ν), which is χ²(2)/2, and alike at real lines."""
-    nu = residuals.noise.degrees_of_freedom
-    real = np.repeat(residuals.real, residuals.measured.shape[1])
-    power = solution.residual[: len(real)] ** 2
-    power[~real] += solution.residual[len(real) :] ** 2
-    freedom = np.where(real, nu, 2.0 * nu)
-    statistic = float(np.sum(freedom * np.log1p(power / freedom)))
-    free = len(solution.residual) - residuals.blocks.sizes.free
-    return TestResult("lack of fit", statistic, float(free), float(chdtrc(free, statistic)))

@@ -1,7 +1,7 @@
 """Subspace identification of an affine state-space model from a record with periodic scheduling, in the time domain."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Annotated
 
 import numpy as np
@@ -125,7 +125,7 @@ def affine_dynamics(
 ) -> tuple[FloatArray, FloatArray]:
     """A_i (1 + n_p, n_x, n_x) and C_i (1 + n_p, n_y, n_x) of O_t (T, d n_y, n_x) in one basis, by least squares.
 
-        Σ_i p_i(t) O_{t+1}↑ A_i = O_t↓,   Σ_i p_i(t) C_i = O_t's first rows,   all phases t at once
+    Σ_i p_i(t) O_{t+1}↑ A_i = O_t↓,   Σ_i p_i(t) C_i = O_t's first rows,   all phases t at once
     """
     m, order = weights.shape[1], bases.shape[2]
     upper = np.roll(bases, -1, axis=0)[:, :-n_y]
@@ -134,7 +134,7 @@ def affine_dynamics(
     known = weights if varying_output else weights[:, :1]
     c = np.zeros((m, n_y * order))
     c[: known.shape[1]] = np.linalg.lstsq(known, bases[:, :n_y].reshape(len(weights), -1), rcond=None)[0]
-    return a.reshape(m, order, order), c.reshape(m, n_y, order)
+    return np.asarray(a.reshape(m, order, order)), np.asarray(c.reshape(m, n_y, order))
 
 
 def with_inputs(a: FloatArray, c: FloatArray, record: VaryingRecord) -> AffineStateSpace:

@@ -38,7 +38,8 @@ def periodic_observability(
         start = phase if phase >= window else phase + period * (-(-(window - phase) // period))
         columns = np.arange(start, len(input) - window + 1, period)
         future = columns[:, None] + np.arange(window)
-        blocks = [x[i].reshape(len(columns), -1) for x, i in _instruments(input, output, future, window)]
+        sources = ((input, future), (input, future - window), (output, future - window), (output, future))
+        blocks = [x[i].reshape(len(columns), -1) for x, i in sources]
         u_rows, z_rows = blocks[0].shape[1], blocks[1].shape[1] + blocks[2].shape[1]
         stacked = np.concatenate(blocks, axis=1)
         if len(stacked) < stacked.shape[1]:
@@ -47,7 +48,7 @@ def periodic_observability(
                 f" windows of {window}; record longer or choose a smaller window",
                 "window",
             )
-        triangle = np.linalg.qr(stacked, mode="r").T
+        triangle = np.asarray(np.linalg.qr(stacked, mode="r")).T
         excitation = np.linalg.svd(triangle[:u_rows, :u_rows], compute_uv=False)
         if excitation[-1] <= SMALLEST_EXCITATION * excitation[0]:
             raise NotIdentifiableError(
@@ -59,13 +60,6 @@ def periodic_observability(
         bases.append(left[:, :order])
         values.append(singular)
     return PeriodicObservability(np.stack(bases), np.stack(values))
-
-
-def _instruments(
-    input: FloatArray, output: FloatArray, future: FloatArray, window: int
-) -> tuple[tuple[FloatArray, FloatArray], ...]:
-    past = future - window
-    return (input, future), (input, past), (output, past), (output, future)
 
 
 @dataclass(frozen=True, eq=False)
