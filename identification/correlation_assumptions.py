@@ -32,13 +32,14 @@ def signal_tests(psi: FloatArray, inputs: FloatArray) -> tuple[TestResult, ...]:
 
         Q = N² Σ_{l=1}^{K} ‖r_l‖² / (N−l) ~ χ²(K n²),   r_l the autocorrelation of signals with r_0 = I
 
-    and likewise for the correlation of u and ψ at lags −K … K. The whiteness of ψ takes in that of its squares, as
-    correlation analysis multiplies samples of ψ. That the ψ_i depend on each other at one time is taken account of
-    by the estimator and is no breach. Signals that are constant are left out.
+    and likewise for the correlation of u and ψ at lags −K … K, each made white first by an autoregression. The
+    whiteness of ψ takes in that of its squares, as correlation analysis multiplies samples of ψ. That the ψ_i depend on
+    each other at one time is taken account of by the estimator and is no breach. Constant signals are left out.
     """
     scheduling = _orthonormal(np.column_stack([psi[:, 1:], psi[:, 1:] ** 2]))
     linear, u = _orthonormal(psi[:, 1:]), _orthonormal(inputs)
-    found = [_autocorrelation_test(A2, u), _autocorrelation_test(A3, scheduling), _independence_test(linear, u)]
+    independence = _independence_test(_innovations(linear), _innovations(u))
+    found = [_autocorrelation_test(A2, u), _autocorrelation_test(A3, scheduling), independence]
     return tuple(test for test in found if test is not None)
 
 
@@ -81,6 +82,15 @@ def _orthonormal(signals: FloatArray) -> FloatArray:
     varying = scale > 1e-9 * np.maximum(size, np.finfo(float).tiny) * np.sqrt(len(signals))
     u, values, _ = np.linalg.svd(centred[:, varying] / scale[varying], full_matrices=False)
     return np.asarray(u[:, values > 1e-6] * np.sqrt(len(signals)))
+
+
+def _innovations(signals: FloatArray) -> FloatArray:
+    """What an autoregression of order K/2 leaves of the signals (N, m), made orthonormal."""
+    order, n = _lags(len(signals)) // 2, len(signals)
+    if order == 0 or signals.shape[1] == 0:
+        return signals
+    past = np.concatenate([signals[order - lag : n - lag] for lag in range(1, order + 1)], axis=1)
+    return _orthonormal(signals[order:] - past @ np.linalg.lstsq(past, signals[order:], rcond=1e-10)[0])
 
 
 def _lags(samples: int) -> int:

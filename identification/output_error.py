@@ -50,10 +50,9 @@ def output_error(start: AffineStateSpace, record: VaryingRecord, max_iterations:
             break
         if np.all(np.mean(errors**2, axis=0) < floor):
             break
-    covariance: FloatArray | None = problem.chart @ solution.covariance @ problem.chart.T
     outcome = Outcome(solution.outcome.status, solution.outcome.advice, iterations)
-    if outcome.status == "not_identifiable":
-        covariance = None
+    known = outcome.status != "not_identifiable"
+    covariance = problem.chart @ solution.covariance @ problem.chart.T if known else None
     noise = errors.T @ errors / len(errors)
     return OutputErrorEstimate(model, outcome, (), covariance, noise_covariance=noise, errors=errors)
 

@@ -24,6 +24,7 @@ from identification.sub_markov_least_squares import WordRegression
 from identification.varying import VaryingRecord
 
 NOISE_FREE = 1e-5
+BEYOND_BOUNDS = 1e100
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -70,6 +71,7 @@ class CorrelationRealisation:
     rows: Annotated[int, "rows selected by their largest entries"] = 10
     columns: Annotated[int, "columns selected by their largest entries"] = 10
     word_length: Annotated[int, "letters of the longest words from which rows and columns are selected"] = 2
+    ridge: Annotated[float, "regularisation of least squares; the corrections undo its bias"] = 0.01
     corrections: Annotated[int, "most corrections by the output error; 0 is the method as published"] = 20
     refinement: Annotated[bool, "whether to maximise the likelihood from there"] = True
 
@@ -82,6 +84,8 @@ class CorrelationRealisation:
         for name, lowest in least.items():
             if getattr(self, name) < lowest:
                 raise RangeError(f"{name} is {getattr(self, name)}; it must be at least {lowest}", name)
+        if not (np.isfinite(self.ridge) and self.ridge >= 0):
+            raise RangeError(f"the ridge is {self.ridge}; it must not be negative", "ridge")
 
     def estimate(self, record: VaryingRecord, order: int | None = None) -> CorrelationEstimate:
         """The model of a record that starts from rest; without `order` n_x is taken from the singular values.
@@ -104,9 +108,11 @@ class CorrelationRealisation:
             refined = output_error(model, record)
             model, outcome, errors = refined.model, refined.outcome, refined.errors
             covariance, noise = refined.covariance, refined.noise_covariance
-        if not np.all(np.isfinite(errors)):
-            advice = "the model is unstable along this scheduling; choose another order or allow corrections"
-            outcome = Outcome("not_converged", advice, corrections)
+        if not np.linalg.norm(errors) < np.linalg.norm(record.output):
+            advice = (
+                "the model explains nothing of the output; choose another order, allow corrections or record longer"
+            )
+            outcome = Outcome("not_converged", advice, outcome.iterations)
         elif (self.refinement or corrections) and np.linalg.norm(errors) > NOISE_FREE * np.linalg.norm(record.output):
             tests = (*tests, *noise_tests(errors))
         return CorrelationEstimate(
@@ -131,7 +137,7 @@ class CorrelationRealisation:
         longest = _words_within(record, self.word_length)
         full = self.hankel == "full"
         depths = (longest - 2, 2) if full and longest < 4 else ((longest - 1) // 2, longest // 2)
-        return _Realising(WordRegression(psi, record.input, longest), depths, full, order)
+        return _Realising(WordRegression(psi, record.input, longest, self.ridge), depths, full, order)
 
     @classmethod
     def example(cls) -> "CorrelationRealisation":
@@ -196,7 +202,9 @@ def _tamed(found: Realisation, record: VaryingRecord) -> tuple[Realisation, Floa
 
 
 def _errors(matrices: Matrices, record: VaryingRecord) -> FloatArray:
-    return np.asarray(record.output - simulate_matrices(matrices, record.input, record.scheduling))
+    """y − ŷ (N, n_y), infinite where it has grown beyond all bounds."""
+    errors = record.output - simulate_matrices(matrices, record.input, record.scheduling)
+    return np.where(abs(errors) < BEYOND_BOUNDS, errors, np.inf)
 
 
 def _words_within(record: VaryingRecord, word_length: int) -> int:
