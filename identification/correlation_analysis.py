@@ -41,7 +41,7 @@ class WhiteExcitation:
                 " every scheduling variable or leave basis functions out",
                 "scheduling",
             )
-        return np.ascontiguousarray(np.linalg.solve(moments, self.psi.T))
+        return np.asarray(np.linalg.inv(moments) @ self.psi.T)
 
     @cached_property
     def input_dual(self) -> FloatArray:
@@ -52,7 +52,7 @@ class WhiteExcitation:
             raise NotIdentifiableError(
                 "an input is constant or a combination of the others; excite every input on its own", "input"
             )
-        return np.ascontiguousarray(np.linalg.solve(variance, centred.T))
+        return np.asarray(np.linalg.inv(variance) @ centred.T)
 
     @cached_property
     def pulses(self) -> FloatArray:
