@@ -76,15 +76,20 @@ class AffineSizes:
 def balanced(model: AffineStateSpace) -> AffineStateSpace:
     """The model in a basis where Σ_i B_i B_iᵀ driven through A_0 and its dual for C_i are equal and diagonal.
 
-    Only a scaling that keeps numbers alike: A_0 is shrunk where it is not stable by itself.
+    Only a scaling that keeps numbers alike: A_0 is shrunk where it is not stable by itself, and a model with states that
+    nothing drives or nobody sees is left as it is.
     """
     a = model.a[0]
     a = a * min(1.0, 0.98 / max(float(abs(np.linalg.eigvals(a)).max(initial=0.0)), 1e-12))
     reach = _gramian(a, sum(part @ part.T for part in model.b))
     observe = _gramian(a.T, sum(part.T @ part for part in model.c))
-    left = np.linalg.cholesky(reach + 1e-12 * np.trace(reach) * np.eye(len(a)))
-    right = np.linalg.cholesky(observe + 1e-12 * np.trace(observe) * np.eye(len(a)))
+    try:
+        left, right = np.linalg.cholesky(reach), np.linalg.cholesky(observe)
+    except np.linalg.LinAlgError:
+        return model
     _, values, v = np.linalg.svd(right.T @ left)
+    if values[-1] <= 1e-10 * values[0]:
+        return model
     return model.transformed(np.asarray(left @ v.T / np.sqrt(values)))
 
 

@@ -51,7 +51,7 @@ def harmonic_noise(steady: SteadyPeriods) -> HarmonicNoise:
 
 def _above_rounding(covariance: ComplexArray, spectrum: ComplexArray) -> ComplexArray:
     level = np.mean(abs(spectrum) ** 2, axis=0)
-    floor = np.maximum(1e4 * np.finfo(np.float64).eps ** 2 * level, np.finfo(np.float64).tiny)
+    floor = np.maximum(1e6 * np.finfo(np.float64).eps ** 2 * level, np.finfo(np.float64).tiny)
     hermitian = (covariance + covariance.conj().transpose(0, 2, 1)) / 2
     return np.asarray(hermitian + np.eye(len(floor)) * floor)
 

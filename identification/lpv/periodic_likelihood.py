@@ -23,6 +23,7 @@ CHARTS = 20
 STEPS_IN_A_CHART = 15
 CANDIDATES = 40
 ACCEPTED_FIT = 1e-4
+ROUNDING = 1e-2  # of the cost expected: what is left of noise-free data
 BAD_FIT = "the model fits worse than the noise allows; choose a higher order, give another start or drop more periods"
 
 
@@ -99,7 +100,7 @@ class PeriodicLikelihood:
         self, residuals: PeriodicResiduals, first: list[AffineStateSpace]
     ) -> tuple[LeastSquaresSolution, FloatArray]:
         """The best solution in θ with J (R, size), and its chart Q; more starts are tried while the fit is bad."""
-        thetas = [residuals.blocks.sizes.join(_matrices(balanced(start))) for start in first]
+        thetas = [residuals.blocks.sizes.join(_matrices(start)) for start in first]
         best = self._lowest(residuals, thetas, None)
         generator = np.random.default_rng(self.seed)
         for _ in range(self.more_starts):
@@ -134,6 +135,7 @@ def minimised(
     """The minimum that a search from θ (size,) reaches, with J (R, size) there, and the last chart Q (size, free)."""
     sizes, iterations = residuals.blocks.sizes, 0
     for _ in range(max_charts):
+        theta = sizes.join(_matrices(balanced(sizes.model(theta, 1.0))))
         chart, centre = sizes.chart(theta), theta
 
         def evaluate(
@@ -152,6 +154,8 @@ def minimised(
             break
     jacobian = residuals(theta)[1]
     outcome = Outcome(solution.outcome.status, solution.outcome.advice, iterations)
+    if outcome.status == "not_converged" and solution.cost < ROUNDING * len(solution.residual):
+        outcome = Outcome("converged", "", iterations)
     return LeastSquaresSolution(theta, solution.residual, jacobian, outcome), sizes.chart(theta)
 
 

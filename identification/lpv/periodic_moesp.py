@@ -56,29 +56,33 @@ class PeriodicMoesp:
         fitted = record if validation is not None else record.part(0, len(record) - len(record) // 5)
         weights = _weights(record.scheduling[:period])
         observability = periodic_observability(fitted.input, fitted.output, period, window, order)
-        scored = []
+        scored, n_y = [], record.output.shape[1]
         for regularisation in self.regularisations:
-            n_y = record.output.shape[1]
             common = common_basis(observability.bases, weights, n_y, regularisation, self.varying_output)
             a, c = affine_dynamics(common.bases, weights, n_y, self.varying_output)
             error, model = self._validated(fitted, record, validation, a, c)
             if np.isfinite(error) and model is not None:
-                scored.append((error, regularisation, common.correlations, model))
+                scored.append((error, regularisation, model))
         if not scored:
             raise NotIdentifiableError(
                 "no regularisation gives a model that is stable along this scheduling; choose another order or window,"
                 " or record longer",
                 "regularisations",
             )
-        _, chosen, correlations, model = min(scored, key=lambda item: item[0])
+        _, chosen, model = min(scored, key=lambda item: item[0])
         model = with_inputs(model.a, model.c, record)
-        advice = f"regularisation {chosen:g} was chosen"
-        if self.varying_output and len(correlations) > order and correlations[order] > AMBIGUOUS:
-            advice += (
-                f"; the state basis is hardly determined (next canonical correlation {correlations[order]:.6f}): use"
-                " a scheduling with more harmonics, or varying_output=False when C does not vary"
-            )
+        exact = common_basis(observability.bases, weights, n_y, min(self.regularisations), self.varying_output)
+        advice = f"regularisation {chosen:g} was chosen" + self._ambiguity(exact.correlations, order)
         return AffineEstimate(model, Outcome("converged", advice, len(scored)), ())
+
+    def _ambiguity(self, correlations: FloatArray, order: int) -> str:
+        if len(correlations) <= order or correlations[order] < AMBIGUOUS:
+            return ""
+        remedy = ", or say varying_output=False if C does not vary" if self.varying_output else ""
+        return (
+            f"; the state basis is hardly determined (next canonical correlation {correlations[order]:.6f}): choose a"
+            f" scheduling with more harmonics{remedy}"
+        )
 
     def _window(self, order: int, period: int) -> int:
         window = min(order + 3, period) if self.window is None else self.window
