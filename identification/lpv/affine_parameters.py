@@ -76,8 +76,8 @@ class AffineSizes:
 def balanced(model: AffineStateSpace) -> AffineStateSpace:
     """The model in a basis where Σ_i B_i B_iᵀ driven through A_0 and its dual for C_i are equal and diagonal.
 
-    Only a scaling that keeps numbers alike: A_0 is shrunk where it is not stable by itself, and a model with states that
-    nothing drives or nobody sees is left as it is.
+    Only a scaling that keeps numbers alike: A_0 is shrunk where it is not stable by itself, and a model with states
+    that nothing drives or nobody sees is left as it is.
     """
     a = model.a[0]
     a = a * min(1.0, 0.98 / max(float(abs(np.linalg.eigvals(a)).max(initial=0.0)), 1e-12))
