@@ -13,7 +13,7 @@ from identification.least_squares import LeastSquaresSolution, levenberg_marquar
 from identification.lpv.affine_parameters import AffineSizes, balanced
 from identification.lpv.input_affine_start import input_affine_start
 from identification.lpv.periodic_residuals import PeriodicResiduals, lack_of_fit
-from identification.lpv.perturbed_starts import perturbed_starts
+from identification.lpv.perturbed_starts import perturbed_starts, stabilised
 from identification.outcome import Outcome
 from identification.response_tests import variance_inflation
 from identification.scheduling import SchedulingVariable
@@ -100,7 +100,7 @@ class PeriodicLikelihood:
         self, residuals: PeriodicResiduals, first: list[AffineStateSpace]
     ) -> tuple[LeastSquaresSolution, FloatArray]:
         """The best solution in θ with J (R, size), and its chart Q; more starts are tried while the fit is bad."""
-        thetas = [residuals.blocks.sizes.join(_matrices(start)) for start in first]
+        thetas = [stabilised(residuals.blocks, residuals.blocks.sizes.join(_matrices(start))) for start in first]
         best = self._lowest(residuals, thetas, None)
         generator = np.random.default_rng(self.seed)
         for _ in range(self.more_starts):

@@ -154,7 +154,11 @@ def test_a_start_of_another_method_is_taken() -> None:
     generator = np.random.default_rng(8)
     model = random_model(generator)
     record = periodic_record(model, generator, 120, 12, 12, noise=0.01)
-    estimate = PeriodicLikelihood().estimate(record, 2, start=model)
+    unstable = replace(model, a=3 * model.a)
+    for start in (model, unstable):
+        estimate = PeriodicLikelihood().estimate(record, 2, start=start)
+        assert estimate.outcome.ok
+        assert estimate.tests[0].p_value > 1e-3
     assert variance_accounted_for(record.output, estimate.model.simulate(record.input, record.scheduling)) > 99.9
     with pytest.raises(ShapeError, match="the start has the sizes"):
         PeriodicLikelihood().estimate(record, 3, start=model)
