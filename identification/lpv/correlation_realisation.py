@@ -1,0 +1,220 @@
+"""Affine state-space models from one experiment with varying scheduling: correlation analysis, then Ho–Kalman."""
+
+from dataclasses import dataclass
+from typing import Annotated, Literal, Protocol
+
+import numpy as np
+
+from identification.affine_estimate import AffineEstimate
+from identification.affine_state_space import Matrices, simulate_matrices
+from identification.arrays import FloatArray
+from identification.correlation_analysis import WhiteExcitation
+from identification.correlation_assumptions import (
+    broken_assumptions,
+    correlation_applies,
+    noise_tests,
+    signal_tests,
+)
+from identification.errors import MisuseError, NotIdentifiableError, RangeError
+from identification.ho_kalman import Realisation, full_realisation, largest_entries, reduced_realisation
+from identification.outcome import Outcome
+from identification.output_error import output_error
+from identification.sub_markov import BasisSelection, ExactSubMarkov, SubMarkovSource, SummedSubMarkov, every_word
+from identification.sub_markov_least_squares import WordRegression
+from identification.varying import VaryingRecord
+
+NOISE_FREE = 1e-5
+BEYOND_BOUNDS = 1e100
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class CorrelationEstimate(AffineEstimate):
+    """With tests of the assumptions A1–A3, and what the model stands on.
+
+    `warnings`: the assumptions that the data break; `parameters`: how the sub-Markov parameters were found;
+    `singular_values` of the Hankel matrix of the last realisation; `rows`, `columns`: the bases selected;
+    `corrections`: how many were made; `noise_covariance` Σ_w (n_y, n_y): None, like the covariance of the model,
+    without refinement.
+    """
+
+    warnings: tuple[str, ...]
+    parameters: Literal["correlation", "least_squares"]
+    singular_values: FloatArray
+    rows: BasisSelection
+    columns: BasisSelection
+    corrections: int
+    noise_covariance: FloatArray | None
+
+
+class _Fitter(Protocol):
+    def fit(self, output: FloatArray) -> SubMarkovSource: ...
+
+
+@dataclass(frozen=True)
+class CorrelationRealisation:
+    """Sub-Markov parameters by correlation or least squares, realised by Ho–Kalman [Cox2018, Sections 3 and 4].
+
+        Ĝ = fit(y),   M = realise(Ĝ);   then, with e = y − ŷ_M,   M ← realise(G_M + fit(e))
+
+    The first line is the method of the source. Its error is that of sample correlations: all of y acts as noise on
+    each parameter. The corrections, which add what is found in the output error e to the model's own parameters G_M,
+    leave e only as that noise; they go on while e decreases. A refinement maximises the likelihood from there.
+    """
+
+    parameters: Annotated[
+        Literal["automatic", "correlation", "least_squares"],
+        "how sub-Markov parameters are found; automatic tests whether correlation applies",
+    ] = "automatic"
+    hankel: Annotated[Literal["reduced", "full"], "whether selected bases or the whole Hankel matrix are realised"] = (
+        "reduced"
+    )
+    rows: Annotated[int, "rows selected by their largest entries"] = 10
+    columns: Annotated[int, "columns selected by their largest entries"] = 10
+    word_length: Annotated[int, "letters of the longest words from which rows and columns are selected"] = 2
+    ridge: Annotated[float, "regularisation of least squares; the corrections undo its bias"] = 0.01
+    corrections: Annotated[int, "most corrections by the output error; 0 is the method as published"] = 20
+    refinement: Annotated[bool, "whether to maximise the likelihood from there"] = True
+
+    def __post_init__(self) -> None:
+        if self.parameters not in ("automatic", "correlation", "least_squares"):
+            raise MisuseError('choose "automatic", "correlation" or "least_squares"', "parameters")
+        if self.hankel not in ("reduced", "full"):
+            raise MisuseError('choose "reduced" or "full"', "hankel")
+        least = {"rows": 1, "columns": 1, "word_length": 2 if self.hankel == "full" else 1, "corrections": 0}
+        for name, lowest in least.items():
+            if getattr(self, name) < lowest:
+                raise RangeError(f"{name} is {getattr(self, name)}; it must be at least {lowest}", name)
+        if not (np.isfinite(self.ridge) and self.ridge >= 0):
+            raise RangeError(f"the ridge is {self.ridge}; it must not be negative", "ridge")
+
+    def estimate(self, record: VaryingRecord, order: int | None = None) -> CorrelationEstimate:
+        """The model of a record that starts from rest; without `order` n_x is taken from the singular values.
+
+        Input and scheduling may be anything for least squares; correlation needs both white (A2, A3), which is tested.
+        Raises NotIdentifiableError when scheduling or input are not rich enough for the words, the record is too short,
+        or the order is above the rank of the Hankel matrix; RangeError for an order that is not positive.
+        """
+        if order is not None and order < 1:
+            raise RangeError(f"the order is {order}; it must be one or more", "order")
+        psi = np.concatenate([np.ones((len(record), 1)), record.scheduling], axis=1)
+        tests = signal_tests(psi, record.input)
+        white = self.parameters == "correlation" or (self.parameters == "automatic" and correlation_applies(tests))
+        realising = self._by_correlation(psi, record, order) if white else self._by_least_squares(psi, record, order)
+        bases, first = realising.first(record.output, (self.rows, self.columns))
+        found, corrections = realising.corrected(first, bases, record, self.corrections)
+        model, outcome = found.model(record.sample_time, record.variables), Outcome("converged", "", corrections)
+        errors, covariance, noise = _errors(found.matrices, record), None, None
+        if self.refinement and np.all(np.isfinite(errors)):
+            refined = output_error(model, record)
+            model, outcome, errors = refined.model, refined.outcome, refined.errors
+            covariance, noise = refined.covariance, refined.noise_covariance
+        if not np.linalg.norm(errors) < np.linalg.norm(record.output):
+            advice = (
+                "the model explains nothing of the output; choose another order, allow corrections or record longer"
+            )
+            outcome = Outcome("not_converged", advice, outcome.iterations)
+        elif (self.refinement or corrections) and np.linalg.norm(errors) > NOISE_FREE * np.linalg.norm(record.output):
+            tests = (*tests, *noise_tests(errors))
+        return CorrelationEstimate(
+            model,
+            outcome,
+            tests,
+            covariance,
+            warnings=broken_assumptions(tests, white),
+            parameters="correlation" if white else "least_squares",
+            singular_values=found.singular_values,
+            rows=bases[0],
+            columns=bases[1],
+            corrections=corrections,
+            noise_covariance=noise,
+        )
+
+    def _by_correlation(self, psi: FloatArray, record: VaryingRecord, order: int | None) -> "_Realising":
+        depths = self.word_length, self.word_length
+        return _Realising(WhiteExcitation(psi, record.input), depths, self.hankel == "full", order)
+
+    def _by_least_squares(self, psi: FloatArray, record: VaryingRecord, order: int | None) -> "_Realising":
+        longest = _words_within(record, self.word_length)
+        full = self.hankel == "full"
+        depths = (longest - 2, 2) if full and longest < 4 else ((longest - 1) // 2, longest // 2)
+        return _Realising(WordRegression(psi, record.input, longest, self.ridge), depths, full, order)
+
+    @classmethod
+    def example(cls) -> "CorrelationRealisation":
+        """A small one, for the conformance tests."""
+        return cls(rows=4, columns=4)
+
+
+Bases = tuple[BasisSelection, BasisSelection]
+
+
+@dataclass(frozen=True)
+class _Realising:
+    """How sub-Markov parameters are fitted and realised; `depths`: letters of the longest rows and columns."""
+
+    fitter: _Fitter
+    depths: tuple[int, int]
+    full: bool
+    order: int | None
+
+    def first(self, output: FloatArray, sizes: tuple[int, int]) -> tuple[Bases, Realisation]:
+        """The bases, (n_o, n_r) = `sizes` of them at most, and the realisation of what is found in the output."""
+        source = self.fitter.fit(output)
+        k, n_y, n_u = source.direct().shape
+        rows, columns = every_word(self.depths[0], k, n_y), every_word(self.depths[1], k, n_u)
+        if not self.full:
+            counts = min(sizes[0], len(rows)), min(sizes[1], len(columns))
+            at_rows, at_columns = largest_entries(source.hankel(rows, columns), *counts)
+            rows, columns = rows.subset(at_rows), columns.subset(at_columns)
+        return (rows, columns), self._realised(source, (rows, columns))
+
+    def corrected(self, best: Realisation, bases: Bases, record: VaryingRecord, most: int) -> tuple[Realisation, int]:
+        """Corrections while each takes 1 % off the output error; an order that is not given is taken anew."""
+        if most == 0:
+            return best, 0
+        best, errors = _tamed(best, record)
+        for count in range(most):
+            source = SummedSubMarkov(ExactSubMarkov(*best.matrices), self.fitter.fit(errors))
+            trial = self._realised(source, bases)
+            after = _errors(trial.matrices, record)
+            if not np.linalg.norm(after) < 0.99 * np.linalg.norm(errors):
+                return best, count
+            best, errors = trial, after
+        return best, most
+
+    def _realised(self, source: SubMarkovSource, bases: Bases) -> Realisation:
+        if self.full:
+            return full_realisation(source, self.depths, self.order)
+        return reduced_realisation(source, *bases, self.order)
+
+
+def _tamed(found: Realisation, record: VaryingRecord) -> tuple[Realisation, FloatArray]:
+    """The realisation, its A_k made smaller while its output error exceeds twice the output; and that error."""
+    a, b, c, d = found.matrices
+    most = 2 * np.linalg.norm(record.output)
+    for shrink in (1.0, 0.9, 0.8, 0.6, 0.4, 0.2):
+        tamed = Realisation((shrink * a, b, c, d), found.singular_values)
+        errors = _errors(tamed.matrices, record)
+        if np.linalg.norm(errors) <= most:
+            return tamed, errors
+    tamed = Realisation((np.zeros_like(a), b, c, d), found.singular_values)
+    return tamed, _errors(tamed.matrices, record)
+
+
+def _errors(matrices: Matrices, record: VaryingRecord) -> FloatArray:
+    """y − ŷ (N, n_y), infinite where it has grown beyond all bounds."""
+    errors = record.output - simulate_matrices(matrices, record.input, record.scheduling)
+    return np.where(abs(errors) < BEYOND_BOUNDS, errors, np.inf)
+
+
+def _words_within(record: VaryingRecord, word_length: int) -> int:
+    """Letters of the longest words, at most 2 · word_length + 1, with four samples for each regressor."""
+    k, n_u = record.scheduling.shape[1] + 1, record.input.shape[1]
+    for longest in range(2 * word_length + 1, 2, -1):
+        if 4 * n_u * sum(k**length for length in range(1, longest + 1)) <= len(record):
+            return longest
+    raise NotIdentifiableError(
+        f"{len(record)} samples are too few for least squares with {k - 1} scheduling signals and {n_u} inputs:"
+        f" words of three letters make {n_u * (k + k**2 + k**3)} regressors; record four times as many samples",
+        "scheduling",
+    )

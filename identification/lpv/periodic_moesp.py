@@ -1,0 +1,169 @@
+"""Subspace identification of an affine state-space model from a record with periodic scheduling, in the time domain."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Annotated
+
+import numpy as np
+
+from identification.affine_estimate import AffineEstimate
+from identification.affine_state_space import AffineStateSpace, frozen_matrices, propagate, simulate_matrices
+from identification.arrays import FloatArray
+from identification.errors import MisuseError, NotIdentifiableError, RangeError
+from identification.lpv.periodic_observability import common_basis, periodic_observability
+from identification.outcome import Outcome
+from identification.varying import TOLERANCE, VaryingRecord, scheduling_period
+
+REGULARISATIONS = tuple(10.0**k for k in range(-8, 5))
+AMBIGUOUS = 0.995
+
+
+@dataclass(frozen=True)
+class PeriodicMoesp:
+    """Observability matrices at every phase of the scheduling, brought to one state basis [Goos2014, Section 2].
+
+        O_t = M_t(p) S,   C(t) = first rows of O_t,   O_{t+1}↑ A(t) = O_t↓,   y = linear in B_i, D_i given A_i, C_i
+
+    Assumes periodic scheduling of period T, any rich input, and white noise; the window d keeps T ≥ d > n_x. Each ν of
+    `regularisations` gives a model; the one with the least squared simulation error on validation data, the last fifth
+    of the record if no other data are given, is kept, with B_i and D_i from the whole record. No covariance comes with
+    it; it can start `PeriodicLikelihood`.
+    """
+
+    window: Annotated[int | None, "d, samples of past and future; when not given n_x + 3, at most T"] = None
+    regularisations: Annotated[Sequence[float], "ν, relative to the kernel of the scheduling, tried one by one"] = (
+        REGULARISATIONS
+    )
+    varying_output: Annotated[bool, "whether C depends on the scheduling"] = True
+    tolerance: Annotated[float, "largest repetition error of the scheduling, relative to its variation"] = TOLERANCE
+    selection_samples: Annotated[int, "samples at most that B and D are fitted to while ν is chosen"] = 5000
+
+    def __post_init__(self) -> None:
+        if not self.regularisations or min(self.regularisations) <= 0:
+            raise RangeError("give at least one regularisation, all positive", "regularisations")
+        if self.selection_samples < 10:
+            raise RangeError("selection_samples must be ten or more", "selection_samples")
+
+    def estimate(self, record: VaryingRecord, order: int, validation: VaryingRecord | None = None) -> AffineEstimate:
+        """The model of order n_x; `validation` starts from rest. The advice says which ν was chosen.
+
+        Raises MisuseError for scheduling that is not periodic, RangeError for a window outside T ≥ d > n_x,
+        NotIdentifiableError for records too short, excitation of too low a rank, or when no ν gives a model that can be
+        simulated.
+        """
+        period = scheduling_period(record, self.tolerance)
+        window = self._window(order, period)
+        fitted = record if validation is not None else record.part(0, len(record) - len(record) // 5)
+        weights = _weights(record.scheduling[:period])
+        observability = periodic_observability(fitted.input, fitted.output, period, window, order)
+        scored, n_y = [], record.output.shape[1]
+        for regularisation in self.regularisations:
+            common = common_basis(observability.bases, weights, n_y, regularisation, self.varying_output)
+            a, c = affine_dynamics(common.bases, weights, n_y, self.varying_output)
+            error, model = self._validated(fitted, record, validation, a, c)
+            if np.isfinite(error) and model is not None:
+                scored.append((error, regularisation, model))
+        if not scored:
+            raise NotIdentifiableError(
+                "no regularisation gives a model that is stable along this scheduling; choose another order or window,"
+                " or record longer",
+                "regularisations",
+            )
+        _, chosen, model = min(scored, key=lambda item: item[0])
+        model = with_inputs(model.a, model.c, record)
+        exact = common_basis(observability.bases, weights, n_y, min(self.regularisations), self.varying_output)
+        advice = f"regularisation {chosen:g} was chosen" + self._ambiguity(exact.correlations, order)
+        return AffineEstimate(model, Outcome("converged", advice, len(scored)), ())
+
+    def _ambiguity(self, correlations: FloatArray, order: int) -> str:
+        if len(correlations) <= order or correlations[order] < AMBIGUOUS:
+            return ""
+        remedy = ", or say varying_output=False if C does not vary" if self.varying_output else ""
+        return (
+            f"; the state basis is hardly determined (next canonical correlation {correlations[order]:.6f}): choose a"
+            f" scheduling with more harmonics{remedy}"
+        )
+
+    def _window(self, order: int, period: int) -> int:
+        window = min(order + 3, period) if self.window is None else self.window
+        if not period >= window > order >= 1:
+            raise RangeError(
+                f"the window d = {window} must keep {period} ≥ d > {order}: at most the period of the scheduling in"
+                " samples, more than the order",
+                "window",
+            )
+        return window
+
+    def _validated(
+        self,
+        fitted: VaryingRecord,
+        record: VaryingRecord,
+        validation: VaryingRecord | None,
+        a: FloatArray,
+        c: FloatArray,
+    ) -> tuple[float, AffineStateSpace | None]:
+        """The mean squared simulation error on validation data, with the model; inf for an unstable one."""
+        part = fitted.part(0, min(len(fitted), self.selection_samples))
+        try:
+            model = with_inputs(a, c, part)
+        except MisuseError:
+            return np.inf, None
+        if validation is not None:
+            test, first = validation, 0
+        else:
+            first = max(len(fitted) - self.selection_samples // 5, 0)
+            stop = min(len(record), len(fitted) + self.selection_samples)
+            test, first = record.part(first, stop), len(fitted) - first
+        matrices = (model.a, model.b, model.c, model.d)
+        with np.errstate(over="ignore", invalid="ignore"):
+            error = simulate_matrices(matrices, test.input, test.scheduling) - test.output
+            return float(np.mean(error[first:] ** 2)), model
+
+
+def _weights(scheduling: FloatArray) -> FloatArray:
+    return np.concatenate([np.ones((len(scheduling), 1)), scheduling], axis=1)
+
+
+def affine_dynamics(
+    bases: FloatArray, weights: FloatArray, n_y: int, varying_output: bool = True
+) -> tuple[FloatArray, FloatArray]:
+    """A_i (1 + n_p, n_x, n_x) and C_i (1 + n_p, n_y, n_x) of O_t (T, d n_y, n_x) in one basis, by least squares.
+
+    Σ_i p_i(t) O_{t+1}↑ A_i = O_t↓,   Σ_i p_i(t) C_i = O_t's first rows,   all phases t at once
+    """
+    m, order = weights.shape[1], bases.shape[2]
+    upper = np.roll(bases, -1, axis=0)[:, :-n_y]
+    regressor = (weights[:, None, :, None] * upper[:, :, None, :]).reshape(-1, m * order)
+    a = np.linalg.lstsq(regressor, bases[:, n_y:].reshape(-1, order), rcond=None)[0]
+    known = weights if varying_output else weights[:, :1]
+    c = np.zeros((m, n_y * order))
+    c[: known.shape[1]] = np.linalg.lstsq(known, bases[:, :n_y].reshape(len(weights), -1), rcond=None)[0]
+    return np.asarray(a.reshape(m, order, order)), np.asarray(c.reshape(m, n_y, order))
+
+
+def with_inputs(a: FloatArray, c: FloatArray, record: VaryingRecord) -> AffineStateSpace:
+    """The model with those A_i, C_i, and B_i, D_i (and the initial state) by linear least squares on a record.
+
+    Raises NotIdentifiableError when the response of A_i grows beyond all numbers or the regressors are dependent.
+    """
+    m, order = a.shape[:2]
+    n_y, n_u, count = c.shape[1], record.input.shape[1], len(record)
+    weights = _weights(record.scheduling)
+    at, _, ct, _ = frozen_matrices((a, a, c, c), record.scheduling)
+    driven = (weights[:, :, None] * record.input[:, None, :]).reshape(count, -1)
+    forcing = np.zeros((order, m * n_u, count, order))
+    for i in range(order):
+        forcing[i, :, :, i] = driven.T
+    with np.errstate(over="ignore", invalid="ignore"):
+        forced = propagate(at, forcing.reshape(-1, count, order), np.zeros(order))[:, :-1]
+        free = propagate(at, np.zeros((order, count, order)), np.eye(order))[:, :-1]
+        response = (ct @ np.concatenate([forced, free])[..., None])[..., 0]
+    if not np.all(np.isfinite(response)):
+        raise NotIdentifiableError("the dynamics found are unstable along this scheduling", "record")
+    direct = np.eye(n_y)[:, None, None, :] * driven.T[None, :, :, None]
+    columns = np.concatenate([response, direct.reshape(-1, count, n_y)]).reshape(-1, count * n_y).T
+    solved = np.linalg.lstsq(columns, record.output.ravel(), rcond=1e-12)[0]
+    size = order * m * n_u
+    b = solved[:size].reshape(order, m, n_u).transpose(1, 0, 2)
+    d = solved[size + order :].reshape(n_y, m, n_u).transpose(1, 0, 2)
+    return AffineStateSpace(a, b, c, d, record.sample_time, record.variables)

@@ -1,0 +1,155 @@
+"""Maximum likelihood of affine state-space models from time records with white output noise."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.linalg import solve_triangular
+
+from identification.affine_estimate import AffineEstimate
+from identification.affine_state_space import AffineStateSpace, Matrices, frozen_matrices, propagate
+from identification.arrays import FloatArray
+from identification.errors import NotIdentifiableError, ShapeError
+from identification.least_squares import levenberg_marquardt
+from identification.lpv.affine_parameters import AffineSizes
+from identification.outcome import Outcome
+from identification.varying import VaryingRecord
+
+ROUNDS = 4
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class OutputErrorEstimate(AffineEstimate):
+    """With the covariance Σ_w (n_y, n_y) of the noise and the errors y − ŷ (N, n_y)."""
+
+    noise_covariance: FloatArray
+    errors: FloatArray
+
+
+def output_error(start: AffineStateSpace, record: VaryingRecord, max_iterations: int = 30) -> OutputErrorEstimate:
+    """The output-error estimate from a model near it: maximum likelihood when the noise is white and Gaussian.
+
+        θ̂ = arg min Σ_t ‖Σ_w^{-½} (y(t) − ŷ(t, θ))‖²,   P_θ = Q (QᵀJᵀJQ)⁻¹ Qᵀ
+
+    All matrices are free; θ moves in the orthogonal complement Q of what a change of state coordinates does to first
+    order, A_kT − TA_k, −TB_k, C_kT, at the start of each round, so that JQ has full rank. Σ_w is the covariance of the
+    errors of the round before, at least 1e-20 of the output's mean square. The state starts from zero. Raises
+    ShapeError for sizes that do not fit and NotIdentifiableError with fewer values of the output than parameters.
+    """
+    _require_fit(start, record)
+    model, iterations = start, 0
+    floor = 1e-20 * np.maximum(np.mean(record.output**2, axis=0), np.finfo(float).tiny)
+    errors = record.output - _simulated(_matrices(model), record)[1]
+    for _ in range(ROUNDS):
+        problem = _Problem(model, record, errors.T @ errors / len(errors) + np.diag(floor), floor)
+        solution = levenberg_marquardt(problem.evaluate, np.zeros(problem.sizes.free), None, max_iterations, 1e-4)
+        iterations += solution.outcome.iterations
+        a, b, c, d = problem.matrices(solution.x)
+        model = replace(model, a=a, b=b, c=c, d=d)
+        errors = record.output - _simulated((a, b, c, d), record)[1]
+        if solution.outcome.status != "converged" or solution.cost > (1 - 1e-6) * errors.size:
+            break
+        if np.all(np.mean(errors**2, axis=0) < floor):
+            break
+    outcome = Outcome(solution.outcome.status, solution.outcome.advice, iterations)
+    known = outcome.status != "not_identifiable"
+    covariance = problem.chart @ solution.covariance @ problem.chart.T if known else None
+    noise = errors.T @ errors / len(errors)
+    return OutputErrorEstimate(model, outcome, (), covariance, noise_covariance=noise, errors=errors)
+
+
+def _require_fit(start: AffineStateSpace, record: VaryingRecord) -> None:
+    widths = (start.n_inputs, start.n_outputs, start.n_scheduling)
+    given = tuple(signal.shape[1] for signal in (record.input, record.output, record.scheduling))
+    if widths != given:
+        raise ShapeError(
+            f"the model has {widths} inputs, outputs and scheduling signals, the record {given}; give the same",
+            "record",
+        )
+    parameters = AffineSizes.of(start).size
+    if record.output.size <= parameters:
+        raise NotIdentifiableError(
+            f"{record.output.size} values of the output cannot determine {parameters} parameters; record longer or"
+            " choose a lower order",
+            "output",
+        )
+
+
+def _matrices(model: AffineStateSpace) -> Matrices:
+    return model.a, model.b, model.c, model.d
+
+
+def _simulated(matrices: Matrices, record: VaryingRecord) -> tuple[FloatArray, FloatArray]:
+    """States (N, n_x) and output (N, n_y) from rest; what diverges comes out as inf or nan."""
+    a, b, c, d = frozen_matrices(matrices, record.scheduling)
+    u = record.input[..., None]
+    with np.errstate(over="ignore", invalid="ignore"):
+        x = propagate(a, (b @ u)[..., 0], np.zeros(a.shape[-1]))[:-1]
+        return x, np.asarray((c @ x[..., None] + d @ u)[..., 0])
+
+
+class _Problem:
+    """Whitened errors and their derivative with respect to β, θ = θ_start + Q β."""
+
+    def __init__(self, start: AffineStateSpace, record: VaryingRecord, noise: FloatArray, floor: FloatArray) -> None:
+        self.sizes = AffineSizes.of(start)
+        self.start = self.sizes.join(_matrices(start))
+        self.chart = self.sizes.chart(self.start)
+        self.record, self.root = record, np.linalg.cholesky(noise).astype(np.float64)
+        # One constant residual of the size of rounding, so that the search ends when only rounding is left.
+        self.rounding = float(np.sqrt(len(record) * np.sum(floor / np.diag(noise))))
+
+    def matrices(self, beta: FloatArray) -> Matrices:
+        """A, B, C, D at β."""
+        return self.sizes.split(self.start + self.chart @ beta)
+
+    def evaluate(self, beta: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Zᵀr (n_θ + 2,) and Zᵀ ∂r/∂β, Z from a triangular factor of both; infinite where the model blows up.
+
+        The long residual itself is not needed: its norm and the projections on the derivatives are kept by Zᵀ.
+        """
+        matrices, record = self.matrices(beta), self.record
+        x, output = _simulated(matrices, record)
+        columns, free = self.sizes.size + 1, self.sizes.free
+        residual, jacobian = np.full(columns + 1, self.rounding), np.zeros((columns + 1, free))
+        if not np.all(np.isfinite(output)) or abs(output).max() > 1e6 * abs(record.output).max():
+            return np.full(columns + 1, np.inf), jacobian
+        stacked = np.empty((output.size, columns))
+        _fill_gradient(stacked[:, :-1], matrices, record, x, self.root)
+        stacked[:, -1] = solve_triangular(self.root, (record.output - output).T, lower=True).ravel()
+        factor: FloatArray = np.asarray(np.linalg.qr(stacked, mode="r"))
+        residual[: len(factor)], residual[len(factor) : -1] = factor[:, -1], 0.0
+        jacobian[: len(factor)] = -factor[:, :-1] @ self.chart
+        return residual, jacobian
+
+
+def _fill_gradient(
+    found: FloatArray, matrices: Matrices, record: VaryingRecord, x: FloatArray, root: FloatArray
+) -> None:
+    """Σ_w^{-½} ∂ŷ/∂θ into `found` (n_y N, n_θ), from the sensitivities of the state to a pulse in each equation."""
+    n_y, samples, n = record.output.shape[1], len(x), x.shape[1]
+    a, _, c, _ = frozen_matrices(matrices, record.scheduling)
+    psi = np.concatenate([np.ones((samples, 1)), record.scheduling], axis=1)
+    drive = psi[:, :, None] * np.concatenate([x, record.input], axis=1)[:, None, :]
+    whitener = solve_triangular(root, np.eye(n_y), lower=True)
+    sensitivity = _sensitivities(a, drive.reshape(samples, -1)).reshape(samples, n, -1)
+    # Axes: output, sample, basis function, equation, state or input.
+    by_output = ((whitener @ c) @ sensitivity).reshape(samples, n_y, n, *drive.shape[1:])
+    through = by_output.transpose(1, 0, 3, 2, 4)
+    direct = whitener[:, None, None, :, None] * drive[:, :, None, :]
+    parts = [part[..., cut] for part in (through, direct) for cut in (slice(n), slice(n, None))]
+    place = 0
+    for part, stack in zip(parts, matrices, strict=True):
+        found[:, place : place + stack.size].reshape(n_y, samples, *stack.shape)[...] = part
+        place += stack.size
+
+
+def _sensitivities(A: FloatArray, drive: FloatArray) -> FloatArray:
+    """S(t+1) = A(t) S(t) + I ⊗ φ(t), (N, n_x, n_x, m): state, equation, regressor."""
+    n, n_x = len(A), A.shape[1]
+    found = np.zeros((n, n_x, n_x, drive.shape[1]))
+    flat = found.reshape(n, n_x, -1)
+    equation = np.arange(n_x)
+    for t in range(n - 1):
+        np.matmul(A[t], flat[t], out=flat[t + 1])
+        found[t + 1, equation, equation] += drive[t]
+    return found
