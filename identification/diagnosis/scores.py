@@ -117,7 +117,7 @@ def _own(p: float, null: FloatArray, candidate: Candidate, tried: int) -> float:
 
 
 def _tail(p: float, ordered: FloatArray, tried: int) -> float:
-    """The share of draws as small as p; where fewer than ten are, the smaller of that bound and p times `tried`."""
+    """The share of draws as small as p; where fewer than ten are, the bound p times `tried`."""
     below = int(np.searchsorted(ordered, p, side="right"))
     share = (below + 1) / (len(ordered) + 1)
-    return float(share if below >= 10 else min(share, p * tried))
+    return float(share if below >= 10 else min(p * tried, 1.0))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.stats import kstest
 
-from identification.diagnosis.scores import score_tests
+from identification.diagnosis.scores import _tail, score_tests
 from identification.diagnosis.signatures import candidates, noise_freedom, tangent_space
 from identification.effects.antiresonance import Antiresonance
 from identification.effects.cubic_stiffness import CubicStiffness
@@ -106,3 +106,17 @@ def test_the_best_variant_is_the_best_when_p_is_too_small_to_tell():
     sizes = [float(np.sum((one.basis @ found.residual) ** 2)) for one in score.candidate.signatures]
     assert score.p_value == 0
     assert sizes[score.best] == max(s for s, one in zip(sizes, score.candidate.signatures, strict=True) if s > 0)
+
+
+def test_adjusted_p_values_are_never_below_the_ones_they_adjust():
+    """Also where they are smaller than the draws resolve: for forty effects then by about forty times."""
+    found = scored(base(3, extra=lambda w: np.exp(-6e-4j * w)), library())
+    assert all(s.adjusted_p >= s.p_value or s.adjusted_p > 0.5 for s in found.values())
+    tiny = [s for s in found.values() if 0 < s.p_value < 1e-5]
+    assert tiny
+    assert all(s.adjusted_p >= 20 * s.p_value for s in tiny)
+
+
+def test_below_what_the_draws_resolve_the_bound_counts_all_that_was_tried():
+    assert _tail(1e-4, np.linspace(3e-4, 1.0, 4000), 40) == pytest.approx(4e-3)
+    assert _tail(0.05, np.linspace(1e-3, 1.0, 4000), 40) == pytest.approx(0.05, rel=0.03)
