@@ -25,6 +25,10 @@ class SignalsRequest(CamelModel):
         default=None, description="periods that share the energy; null: as many as the duration of the design holds"
     )
     amplitude_limit: Positive | None = Field(default=None, description="largest value; null: none")
+    oversampling: Annotated[Integer, Field(ge=1, le=16)] = Field(
+        default=1,
+        description="above 1, crest factor and limit are those behind a reconstruction filter; multisines only",
+    )
     seed: Annotated[Integer, Field(ge=0, le=2**53)] = Field(default=0, description="of the phases or the noise")
 
 

@@ -176,6 +176,13 @@ def test_an_amplitude_limit_is_kept_by_playing_longer(api: Api, design: Json) ->
         assert signal["energy"] == pytest.approx(experiment["energy"], rel=1e-9)
 
 
+def test_peaks_between_the_samples_can_be_kept_low(api: Api, design: Json) -> None:
+    path = f"/designs/{design['id']}/signals"
+    plain, behind_filter = (api.made(path, {"oversampling": factor})["signals"] for factor in (1, 4))
+    for one, other in zip(plain, behind_filter, strict=True):
+        assert other["crestFactorBetweenSamples"] < one["crestFactorBetweenSamples"]
+
+
 def test_filtered_noise_and_wav(api: Api, design: Json) -> None:
     made = api.made(f"/designs/{design['id']}/signals", {"method": "filtered_noise", "seed": 5})
     again = api.made(f"/designs/{design['id']}/signals", {"method": "filtered_noise", "seed": 5})

@@ -56,6 +56,7 @@ def _realised(
         method=request.method,
         periods=periods,
         amplitude_limit=request.amplitude_limit,
+        oversampling=request.oversampling,
     )
     if signal.samples > MOST_SAMPLES:
         raise RangeError(
