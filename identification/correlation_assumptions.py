@@ -1,7 +1,6 @@
 """Do the data keep the assumptions A1–A3 under which correlation analysis finds sub-Markov parameters?"""
 
 import numpy as np
-from scipy import stats
 
 from identification.arrays import FloatArray
 from identification.outcome import TestResult
@@ -53,7 +52,9 @@ def noise_tests(errors: FloatArray) -> tuple[TestResult, ...]:
     if found is None:
         return ()
     n = len(white)
-    skewness, excess = stats.skew(white), stats.kurtosis(white)
+    from scipy.stats import kurtosis, skew
+
+    skewness, excess = skew(white), kurtosis(white)
     statistic = float(np.sum(n * (skewness**2 / 6 + excess**2 / 24)))
     return (found, chi_square(A1_NORMAL, statistic, 2 * white.shape[1]))
 

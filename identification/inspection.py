@@ -5,7 +5,6 @@ from typing import Literal
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
-from scipy import stats
 
 from identification.arrays import ComplexArray, FloatArray
 from identification.errors import RangeError
@@ -154,7 +153,9 @@ def _trend(y: FloatArray, period: int | None, periods: int) -> float | None:
     means = y[: blocks * length].reshape(blocks, length).mean(axis=1)
     if np.ptp(means) <= 1e-9 * abs(y).max():
         return None
-    line = stats.linregress(np.arange(blocks), means)
+    from scipy.stats import linregress
+
+    line = linregress(np.arange(blocks), means)
     change = float(line.slope) * len(y) / length
     return change if line.pvalue < 1e-3 and abs(change) > 0.1 * float(np.std(y)) else None
 
