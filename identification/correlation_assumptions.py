@@ -47,13 +47,13 @@ def noise_tests(errors: FloatArray) -> tuple[TestResult, ...]:
 
     The second is the sum over white combinations of N (S²/6 + E²/24) ~ χ²(2), S skewness and E excess.
     """
+    from scipy.stats import kurtosis, skew
+
     white = _orthonormal(errors)
     found = _autocorrelation_test(A1, white)
     if found is None:
         return ()
     n = len(white)
-    from scipy.stats import kurtosis, skew
-
     skewness, excess = skew(white), kurtosis(white)
     statistic = float(np.sum(n * (skewness**2 / 6 + excess**2 / 24)))
     return (found, chi_square(A1_NORMAL, statistic, 2 * white.shape[1]))
