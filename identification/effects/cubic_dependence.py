@@ -1,38 +1,17 @@
 """A coefficient with a cubic part in the scheduling variable that the model has not."""
 
-from dataclasses import dataclass, replace
-from typing import ClassVar, Self
+from dataclasses import dataclass
+from typing import ClassVar
 
-import numpy as np
-
-from identification.arrays import FloatArray
-from identification.comparison.batch import Batch
-from identification.places.linear import Coefficient
-from identification.places.place import Flow, Setting
+from identification.places.dependence import LegendreDependence
 
 
 @dataclass(frozen=True)
-class CubicDependence(Coefficient):
+class CubicDependence(LegendreDependence):
     """ζ_i(p) + e P_3(p̃), the Legendre polynomial of degree 3 in p̃ = −1 … 1, i = `coefficient` [Ghosh2018, (2)]."""
 
     kind: ClassVar[str] = "cubic_dependence"
     title: ClassVar[str] = "cubic dependence of a coefficient on p"
     unit: ClassVar[str] = "unit of the coefficient"
     source: ClassVar[str] = "[Ghosh2018, (2)]"
-
-    coefficient: int = 0
-    variable: int = 0
-
-    def direction(self, setting: Setting) -> FloatArray:
-        """One for the coefficient, zero for the others."""
-        chosen = np.arange(setting.structure.n_plant) == self.coefficient
-        return np.repeat(chosen[None].astype(np.float64), len(setting.zeta), axis=0)
-
-    def profile(self, setting: Setting, batch: Batch) -> FloatArray:
-        """P_3(p̃)."""
-        return np.asarray(np.polynomial.legendre.legval(setting.points[:, self.variable], np.eye(3 + 1)[3]))
-
-    def variants(self, flow: Flow) -> list[Self]:
-        """Every coefficient of the plant and every scheduling variable."""
-        sizes = flow.setting.structure.n_plant, flow.setting.points.shape[1]
-        return [replace(self, coefficient=i, variable=s) for i in range(sizes[0]) for s in range(sizes[1])]
+    degree: ClassVar[int] = 3
