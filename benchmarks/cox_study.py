@@ -24,9 +24,9 @@ from benchmarks.processes import spread
 from identification.affine_state_space import Matrices, best_fit_rate, simulate_matrices, variance_accounted_for
 from identification.correlation_analysis import CorrelatedSubMarkov, WhiteExcitation
 from identification.ho_kalman import Realisation, full_realisation, largest_entries, reduced_realisation
-from identification.lpv.correlation_realisation import CorrelationRealisation
 from identification.sub_markov import BasisSelection, every_word
-from identification.varying import VaryingRecord
+from identification.varying.correlation_realisation import CorrelationRealisation
+from identification.varying.records import VaryingRecord
 from tests.support.random_state_space import random_affine, slow_record, white_record
 
 ORDER, SAMPLES, BASES = 4, 5000, 10

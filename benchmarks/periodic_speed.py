@@ -20,11 +20,11 @@ from scipy.linalg import lu_factor, lu_solve
 
 from benchmarks.wind_turbine_plant import PLANT, SIZES, THETA, disturbed, noise_free
 from identification.arrays import ComplexArray, FloatArray
-from identification.lpv.affine_parameters import AffineSizes
-from identification.lpv.harmonic_blocks import HarmonicBlocks
-from identification.lpv.harmonic_noise import HarmonicNoise
-from identification.lpv.periodic_residuals import PeriodicResiduals
-from identification.varying import steady_periods
+from identification.varying.affine_parameters import AffineSizes
+from identification.varying.harmonic_blocks import HarmonicBlocks
+from identification.varying.harmonic_noise import HarmonicNoise
+from identification.varying.periodic_residuals import PeriodicResiduals
+from identification.varying.records import steady_periods
 
 Response = Callable[[FloatArray], tuple[ComplexArray, ComplexArray]]
 

@@ -40,9 +40,9 @@ from benchmarks.wind_turbine_plant import (
 )
 from identification.affine_estimate import AffineEstimate
 from identification.arrays import ComplexArray, FloatArray
-from identification.lpv.periodic_likelihood import PeriodicLikelihood
-from identification.lpv.periodic_moesp import PeriodicMoesp
 from identification.outcome import Outcome
+from identification.varying.periodic_likelihood import PeriodicLikelihood
+from identification.varying.periodic_moesp import PeriodicMoesp
 
 BATCH = 25
 NAMES = {

@@ -8,11 +8,11 @@ from scipy.signal import lfilter
 
 from identification.affine_state_space import AffineStateSpace, Matrices, simulate_matrices
 from identification.arrays import FloatArray
-from identification.lpv.affine_parameters import AffineSizes
-from identification.lpv.harmonic_noise import HarmonicNoise
-from identification.lpv.periodic_residuals import PeriodicResiduals
 from identification.scheduling import SchedulingVariable
-from identification.varying import VaryingRecord, steady_periods
+from identification.varying.affine_parameters import AffineSizes
+from identification.varying.harmonic_noise import HarmonicNoise
+from identification.varying.periodic_residuals import PeriodicResiduals
+from identification.varying.records import VaryingRecord, steady_periods
 
 PLANT = AffineStateSpace(
     np.array([[[0.0, 0.0734], [-6.5229, -0.4997]], [[-0.0021, 0.0], [-0.0138, 0.5196]]]),

@@ -7,8 +7,8 @@ import numpy as np
 from identification.affine_state_space import AffineStateSpace, frozen_matrices, propagate
 from identification.arrays import ComplexArray, FloatArray
 from identification.errors import NotIdentifiableError
-from identification.lpv.affine_parameters import AffineSizes
 from identification.outcome import Outcome, TestResult
+from identification.varying.affine_parameters import AffineSizes
 
 
 @dataclass(frozen=True, eq=False)

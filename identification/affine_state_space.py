@@ -7,7 +7,7 @@ import numpy as np
 from identification.arrays import ComplexArray, FloatArray, finite_floats
 from identification.errors import RangeError, ShapeError
 from identification.scheduling import SchedulingVariable
-from identification.varying import require_within_range
+from identification.varying.records import require_within_range
 
 
 @dataclass(frozen=True, eq=False)

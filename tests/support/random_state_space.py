@@ -6,7 +6,7 @@ import numpy as np
 
 from identification.affine_state_space import AffineStateSpace
 from identification.arrays import FloatArray
-from identification.varying import VaryingRecord
+from identification.varying.records import VaryingRecord
 
 
 def random_affine(

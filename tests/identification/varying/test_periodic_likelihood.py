@@ -12,16 +12,16 @@ from benchmarks.wind_turbine_plant import validation_fits as fits
 from identification.affine_estimate import AffineEstimate
 from identification.affine_state_space import variance_accounted_for
 from identification.errors import MisuseError, NotIdentifiableError, ShapeError
-from identification.lpv.affine_parameters import AffineSizes, balanced
-from identification.lpv.harmonic_blocks import HarmonicBlocks
-from identification.lpv.harmonic_noise import harmonic_noise
-from identification.lpv.periodic_likelihood import PeriodicLikelihood
 from identification.lti.rational_fit import RationalFit
 from identification.models import RationalStructure
 from identification.outcome import Outcome
 from identification.signals import TimeRecord
 from identification.spectral.periodic_average import PeriodicAverage
-from identification.varying import VaryingRecord, steady_periods
+from identification.varying.affine_parameters import AffineSizes, balanced
+from identification.varying.harmonic_blocks import HarmonicBlocks
+from identification.varying.harmonic_noise import harmonic_noise
+from identification.varying.periodic_likelihood import PeriodicLikelihood
+from identification.varying.records import VaryingRecord, steady_periods
 from tests.identification.varying.models import periodic_record, random_model
 
 SAMPLES = 10_000

@@ -6,9 +6,9 @@ import pytest
 from benchmarks.wind_turbine_plant import PLANT, disturbed, noise_free, validation_fits
 from identification.affine_state_space import variance_accounted_for
 from identification.errors import MisuseError, NotIdentifiableError, RangeError
-from identification.lpv.periodic_likelihood import PeriodicLikelihood
-from identification.lpv.periodic_moesp import PeriodicMoesp
-from identification.varying import VaryingRecord
+from identification.varying.periodic_likelihood import PeriodicLikelihood
+from identification.varying.periodic_moesp import PeriodicMoesp
+from identification.varying.records import VaryingRecord
 from tests.identification.varying.models import random_model
 
 SAMPLES = 8000

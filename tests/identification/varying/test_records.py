@@ -5,7 +5,7 @@ import pytest
 
 from identification.errors import MisuseError, RangeError, ShapeError
 from identification.scheduling import SchedulingVariable
-from identification.varying import Periodicity, VaryingRecord, periodicity, scheduling_period, steady_periods
+from identification.varying.records import Periodicity, VaryingRecord, periodicity, scheduling_period, steady_periods
 
 SPEED = SchedulingVariable("speed", "m/s", -1.0, 1.0)
 

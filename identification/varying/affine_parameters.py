@@ -6,6 +6,7 @@ import numpy as np
 
 from identification.affine_state_space import AffineStateSpace, Matrices
 from identification.arrays import FloatArray
+from identification.errors import RangeError
 from identification.scheduling import SchedulingVariable
 
 
@@ -71,6 +72,13 @@ class AffineSizes:
         """An orthonormal basis Q (size, free) of what is perpendicular to the changes of the state basis at θ."""
         u, _, _ = np.linalg.svd(self.similarity_tangent(theta), full_matrices=True)
         return np.asarray(u[:, self.order**2 :])
+
+
+def stated_order(order: int | None) -> int:
+    """The order n_x; raises RangeError when it is not stated or not positive."""
+    if order is None or order < 1:
+        raise RangeError(f"the order is {order}; state a number of states, one or more", "order")
+    return order
 
 
 def balanced(model: AffineStateSpace) -> AffineStateSpace:

@@ -6,7 +6,7 @@ import numpy as np
 
 from identification.arrays import BoolArray, ComplexArray, FloatArray
 from identification.errors import MisuseError
-from identification.varying import SteadyPeriods
+from identification.varying.records import SteadyPeriods
 
 LEAST_LINES = 30
 

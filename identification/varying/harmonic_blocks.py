@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from identification.arrays import BoolArray, ComplexArray, FloatArray, IntArray
-from identification.lpv.affine_parameters import AffineSizes
+from identification.varying.affine_parameters import AffineSizes
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,9 +3,9 @@
 import numpy as np
 
 from identification.arrays import FloatArray
-from identification.lpv.affine_parameters import AffineSizes
-from identification.lpv.harmonic_blocks import HarmonicBlocks
-from identification.lpv.periodic_residuals import PeriodicResiduals
+from identification.varying.affine_parameters import AffineSizes
+from identification.varying.harmonic_blocks import HarmonicBlocks
+from identification.varying.periodic_residuals import PeriodicResiduals
 
 SHRINK = 0.8
 FOLLOWED = 6

@@ -7,8 +7,8 @@ from scipy.signal import lfilter
 from identification.affine_state_space import best_fit_rate, variance_accounted_for
 from identification.correlation_assumptions import A1, A2, A3
 from identification.errors import MisuseError, NotIdentifiableError, RangeError
-from identification.lpv.correlation_realisation import CorrelationRealisation
-from identification.varying import VaryingRecord
+from identification.varying.correlation_realisation import CorrelationRealisation
+from identification.varying.records import VaryingRecord
 from tests.support.random_state_space import noisy_record, random_affine, slow_record, white_record
 
 

@@ -5,8 +5,8 @@ import numpy as np
 from identification.affine_state_space import AffineStateSpace
 from identification.arrays import ComplexArray, FloatArray
 from identification.errors import NotIdentifiableError
-from identification.lpv.affine_parameters import AffineSizes
-from identification.lpv.harmonic_blocks import HarmonicBlocks
+from identification.varying.affine_parameters import AffineSizes
+from identification.varying.harmonic_blocks import HarmonicBlocks
 
 STABLE_RADIUS = 0.95
 

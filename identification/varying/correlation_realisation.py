@@ -1,7 +1,7 @@
 """Affine state-space models from one experiment with varying scheduling: correlation analysis, then Ho–Kalman."""
 
 from dataclasses import dataclass
-from typing import Annotated, Literal, Protocol
+from typing import Annotated, ClassVar, Literal, Protocol
 
 import numpy as np
 
@@ -18,10 +18,11 @@ from identification.correlation_assumptions import (
 from identification.errors import MisuseError, NotIdentifiableError, RangeError
 from identification.ho_kalman import Realisation, full_realisation, largest_entries, reduced_realisation
 from identification.outcome import Outcome
-from identification.output_error import output_error
 from identification.sub_markov import BasisSelection, ExactSubMarkov, SubMarkovSource, SummedSubMarkov, every_word
 from identification.sub_markov_least_squares import WordRegression
-from identification.varying import VaryingRecord
+from identification.varying.output_error import output_error
+from identification.varying.progress import Progress, silent, within
+from identification.varying.records import VaryingRecord
 
 NOISE_FREE = 1e-5
 BEYOND_BOUNDS = 1e100
@@ -61,6 +62,8 @@ class CorrelationRealisation:
     leave e only as that noise; they go on while e decreases. A refinement maximises the likelihood from there.
     """
 
+    kind: ClassVar[str] = "correlation_realisation"
+
     parameters: Annotated[
         Literal["automatic", "correlation", "least_squares"],
         "how sub-Markov parameters are found; automatic tests whether correlation applies",
@@ -87,7 +90,9 @@ class CorrelationRealisation:
         if not (np.isfinite(self.ridge) and self.ridge >= 0):
             raise RangeError(f"the ridge is {self.ridge}; it must not be negative", "ridge")
 
-    def estimate(self, record: VaryingRecord, order: int | None = None) -> CorrelationEstimate:
+    def estimate(
+        self, record: VaryingRecord, order: int | None = None, *, progress: Progress = silent
+    ) -> CorrelationEstimate:
         """The model of a record that starts from rest; without `order` n_x is taken from the singular values.
 
         Input and scheduling may be anything for least squares; correlation needs both white (A2, A3), which is tested.
@@ -100,12 +105,13 @@ class CorrelationRealisation:
         tests = signal_tests(psi, record.input)
         white = self.parameters == "correlation" or (self.parameters == "automatic" and correlation_applies(tests))
         realising = self._by_correlation(psi, record, order) if white else self._by_least_squares(psi, record, order)
+        progress(0.1, "realisation of the sub-Markov parameters")
         bases, first = realising.first(record.output, (self.rows, self.columns))
-        found, corrections = realising.corrected(first, bases, record, self.corrections)
+        found, corrections = realising.corrected(first, bases, record, self.corrections, within(progress, 0.2, 0.5))
         model, outcome = found.model(record.sample_time, record.variables), Outcome("converged", "", corrections)
         errors, covariance, noise = _errors(found.matrices, record), None, None
         if self.refinement and np.all(np.isfinite(errors)):
-            refined = output_error(model, record)
+            refined = output_error(model, record, progress=within(progress, 0.5, 1.0))
             model, outcome, errors = refined.model, refined.outcome, refined.errors
             covariance, noise = refined.covariance, refined.noise_covariance
         if not np.linalg.norm(errors) < np.linalg.norm(record.output):
@@ -168,12 +174,15 @@ class _Realising:
             rows, columns = rows.subset(at_rows), columns.subset(at_columns)
         return (rows, columns), self._realised(source, (rows, columns))
 
-    def corrected(self, best: Realisation, bases: Bases, record: VaryingRecord, most: int) -> tuple[Realisation, int]:
+    def corrected(
+        self, best: Realisation, bases: Bases, record: VaryingRecord, most: int, progress: Progress
+    ) -> tuple[Realisation, int]:
         """Corrections while each takes 1 % off the output error; an order that is not given is taken anew."""
         if most == 0:
             return best, 0
         best, errors = _tamed(best, record)
         for count in range(most):
+            progress(count / most, f"correction {count + 1}")
             source = SummedSubMarkov(ExactSubMarkov(*best.matrices), self.fitter.fit(errors))
             trial = self._realised(source, bases)
             after = _errors(trial.matrices, record)

@@ -1,6 +1,7 @@
 """Maximum likelihood of affine state-space models from time records with white output noise."""
 
 from dataclasses import dataclass, replace
+from typing import Annotated, ClassVar
 
 import numpy as np
 from scipy.linalg import solve_triangular
@@ -8,11 +9,12 @@ from scipy.linalg import solve_triangular
 from identification.affine_estimate import AffineEstimate
 from identification.affine_state_space import AffineStateSpace, Matrices, frozen_matrices, propagate
 from identification.arrays import FloatArray
-from identification.errors import NotIdentifiableError, ShapeError
+from identification.errors import NotIdentifiableError, RangeError, ShapeError
 from identification.least_squares import levenberg_marquardt
-from identification.lpv.affine_parameters import AffineSizes
 from identification.outcome import Outcome
-from identification.varying import VaryingRecord
+from identification.varying.affine_parameters import AffineSizes
+from identification.varying.progress import Progress, silent
+from identification.varying.records import VaryingRecord
 
 ROUNDS = 4
 
@@ -25,7 +27,38 @@ class OutputErrorEstimate(AffineEstimate):
     errors: FloatArray
 
 
-def output_error(start: AffineStateSpace, record: VaryingRecord, max_iterations: int = 30) -> OutputErrorEstimate:
+@dataclass(frozen=True)
+class OutputError:
+    """Maximum likelihood in the time domain from a model near it, for white noise and scheduling of any kind.
+
+    See `output_error`.
+    """
+
+    kind: ClassVar[str] = "output_error"
+
+    max_iterations: Annotated[int, "most iterations in each of four rounds, after which the noise is weighed anew"] = 30
+
+    def __post_init__(self) -> None:
+        if self.max_iterations < 1:
+            raise RangeError(f"max_iterations is {self.max_iterations}; it must be one or more", "max_iterations")
+
+    def estimate(
+        self, record: VaryingRecord, order: int | None, start: AffineStateSpace, *, progress: Progress = silent
+    ) -> OutputErrorEstimate:
+        """The estimate of a record that starts from rest; the order is that of the start. Raises as `output_error`."""
+        if order not in (None, start.order):
+            raise ShapeError(f"the start has order {start.order}, {order} is asked for", "start")
+        return output_error(start, record, self.max_iterations, progress)
+
+    @classmethod
+    def example(cls) -> "OutputError":
+        """A small one, for the conformance tests."""
+        return cls()
+
+
+def output_error(
+    start: AffineStateSpace, record: VaryingRecord, max_iterations: int = 30, progress: Progress = silent
+) -> OutputErrorEstimate:
     """The output-error estimate from a model near it: maximum likelihood when the noise is white and Gaussian.
 
         θ̂ = arg min Σ_t ‖Σ_w^{-½} (y(t) − ŷ(t, θ))‖²,   P_θ = Q (QᵀJᵀJQ)⁻¹ Qᵀ
@@ -39,7 +72,8 @@ def output_error(start: AffineStateSpace, record: VaryingRecord, max_iterations:
     model, iterations = start, 0
     floor = 1e-20 * np.maximum(np.mean(record.output**2, axis=0), np.finfo(float).tiny)
     errors = record.output - _simulated(_matrices(model), record)[1]
-    for _ in range(ROUNDS):
+    for i in range(ROUNDS):
+        progress(i / ROUNDS, f"likelihood, {iterations} iterations")
         problem = _Problem(model, record, errors.T @ errors / len(errors) + np.diag(floor), floor)
         solution = levenberg_marquardt(problem.evaluate, np.zeros(problem.sizes.free), None, max_iterations, 1e-4)
         iterations += solution.outcome.iterations

@@ -1,7 +1,7 @@
 """Maximum likelihood of an affine state-space model from synchronised periodic data, in the frequency domain."""
 
 from dataclasses import dataclass, replace
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 
@@ -10,14 +10,15 @@ from identification.affine_state_space import AffineStateSpace
 from identification.arrays import FloatArray
 from identification.errors import MisuseError, NotIdentifiableError, RangeError, ShapeError
 from identification.least_squares import LeastSquaresSolution, levenberg_marquardt
-from identification.lpv.affine_parameters import AffineSizes, balanced
-from identification.lpv.input_affine_start import input_affine_start
-from identification.lpv.periodic_residuals import PeriodicResiduals, lack_of_fit
-from identification.lpv.perturbed_starts import perturbed_starts, stabilised
 from identification.outcome import Outcome
 from identification.response_tests import variance_inflation
 from identification.scheduling import SchedulingVariable
-from identification.varying import TOLERANCE, SteadyPeriods, VaryingRecord, steady_periods
+from identification.varying.affine_parameters import AffineSizes, balanced, stated_order
+from identification.varying.input_affine_start import input_affine_start
+from identification.varying.periodic_residuals import PeriodicResiduals, lack_of_fit
+from identification.varying.perturbed_starts import perturbed_starts, stabilised
+from identification.varying.progress import Progress, silent, within
+from identification.varying.records import TOLERANCE, SteadyPeriods, VaryingRecord, steady_periods
 
 CHARTS = 20
 STEPS_IN_A_CHART = 15
@@ -42,6 +43,8 @@ class PeriodicLikelihood:
     models around it are tried too.
     """
 
+    kind: ClassVar[str] = "periodic_likelihood"
+
     drop_periods: Annotated[
         int | None, "leading periods left out as transient; found from the record when not given"
     ] = None
@@ -59,7 +62,14 @@ class PeriodicLikelihood:
         if self.max_charts < 1:
             raise RangeError(f"max_charts is {self.max_charts}; it must be one or more", "max_charts")
 
-    def estimate(self, record: VaryingRecord, order: int, start: AffineStateSpace | None = None) -> AffineEstimate:
+    def estimate(
+        self,
+        record: VaryingRecord,
+        order: int | None,
+        start: AffineStateSpace | None = None,
+        *,
+        progress: Progress = silent,
+    ) -> AffineEstimate:
         """The model of order n_x of a record, with its covariance.
 
         Raises MisuseError when the record is not periodic, not synchronised or too short (see `steady_periods`),
@@ -67,24 +77,24 @@ class PeriodicLikelihood:
         Excitation of too low a rank gives the outcome "not_identifiable" and no covariance.
         """
         steady = steady_periods(record, self.drop_periods, self.tolerance)
-        return self.estimate_steady(steady, order, record.sample_time, start, record.variables)
+        return self.estimate_steady(steady, order, record.sample_time, start, record.variables, progress)
 
     def estimate_steady(
         self,
         steady: SteadyPeriods,
-        order: int,
+        order: int | None,
         sample_time: float,
         start: AffineStateSpace | None = None,
         variables: tuple[SchedulingVariable, ...] = (),
+        progress: Progress = silent,
     ) -> AffineEstimate:
         """As `estimate`, from steady periods; `variables` are the declared scheduling variables, if any."""
-        if order < 1:
-            raise RangeError(f"the order is {order}; it must be one or more", "order")
+        order = stated_order(order)
         residuals = PeriodicResiduals.of(steady, order, self.zero_frequency)
         sizes = residuals.blocks.sizes
         _require_enough(residuals)
         starts = _starts(residuals, sample_time) if start is None else [_fitting(start, sizes)]
-        solution, chart = self._search(residuals, starts)
+        solution, chart = self._search(residuals, starts, progress)
         model = sizes.model(solution.x, sample_time, variables)
         if solution.outcome.status == "not_identifiable":
             return AffineEstimate(model, solution.outcome, ())
@@ -96,17 +106,24 @@ class PeriodicLikelihood:
             outcome = replace(outcome, advice=BAD_FIT)
         return AffineEstimate(model, outcome, (fit,), covariance)
 
+    @classmethod
+    def example(cls) -> "PeriodicLikelihood":
+        """A small one, for the conformance tests."""
+        return cls()
+
     def _search(
-        self, residuals: PeriodicResiduals, first: list[AffineStateSpace]
+        self, residuals: PeriodicResiduals, first: list[AffineStateSpace], progress: Progress
     ) -> tuple[LeastSquaresSolution, FloatArray]:
         """The best solution in θ with J (R, size), and its chart Q; more starts are tried while the fit is bad."""
         thetas = [stabilised(residuals.blocks, residuals.blocks.sizes.join(_matrices(start))) for start in first]
-        best = self._lowest(residuals, thetas, None)
+        rounds = self.more_starts + 1
+        best = self._lowest(residuals, thetas, None, within(progress, 0.0, 1 / rounds))
         generator = np.random.default_rng(self.seed)
-        for _ in range(self.more_starts):
+        for i in range(1, rounds):
             if _fits(residuals, best[0]):
                 break
-            best = self._lowest(residuals, perturbed_starts(residuals, thetas[0], CANDIDATES, generator), best)
+            drawn = perturbed_starts(residuals, thetas[0], CANDIDATES, generator)
+            best = self._lowest(residuals, drawn, best, within(progress, i / rounds, (i + 1) / rounds))
         return best
 
     def _lowest(
@@ -114,9 +131,11 @@ class PeriodicLikelihood:
         residuals: PeriodicResiduals,
         thetas: list[FloatArray],
         best: tuple[LeastSquaresSolution, FloatArray] | None,
+        progress: Progress,
     ) -> tuple[LeastSquaresSolution, FloatArray]:
-        for theta in thetas:
-            found = minimised(residuals, theta, self.max_charts)
+        for i, theta in enumerate(thetas):
+            part = within(progress, i / len(thetas), (i + 1) / len(thetas))
+            found = minimised(residuals, theta, self.max_charts, part)
             if best is None or found[0].cost < best[0].cost:
                 best = found
             if _fits(residuals, found[0]):
@@ -130,11 +149,12 @@ def _fits(residuals: PeriodicResiduals, solution: LeastSquaresSolution) -> bool:
 
 
 def minimised(
-    residuals: PeriodicResiduals, theta: FloatArray, max_charts: int = CHARTS
+    residuals: PeriodicResiduals, theta: FloatArray, max_charts: int = CHARTS, progress: Progress = silent
 ) -> tuple[LeastSquaresSolution, FloatArray]:
     """The minimum that a search from θ (size,) reaches, with J (R, size) there, and the last chart Q (size, free)."""
     sizes, iterations = residuals.blocks.sizes, 0
-    for _ in range(max_charts):
+    for i in range(max_charts):
+        progress(i / max_charts, f"likelihood, {iterations} iterations")
         theta = sizes.join(_matrices(balanced(sizes.model(theta, 1.0))))
         chart, centre = sizes.chart(theta), theta
 

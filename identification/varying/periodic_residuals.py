@@ -8,11 +8,11 @@ from scipy.special import chdtrc
 
 from identification.arrays import BoolArray, ComplexArray, FloatArray
 from identification.least_squares import LeastSquaresSolution
-from identification.lpv.affine_parameters import AffineSizes
-from identification.lpv.harmonic_blocks import HarmonicBlocks
-from identification.lpv.harmonic_noise import HarmonicNoise, Whitening, harmonic_noise
 from identification.outcome import TestResult
-from identification.varying import SteadyPeriods
+from identification.varying.affine_parameters import AffineSizes
+from identification.varying.harmonic_blocks import HarmonicBlocks
+from identification.varying.harmonic_noise import HarmonicNoise, Whitening, harmonic_noise
+from identification.varying.records import SteadyPeriods
 
 
 @dataclass(frozen=True, eq=False)

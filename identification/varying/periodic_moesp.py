@@ -1,8 +1,7 @@
 """Subspace identification of an affine state-space model from a record with periodic scheduling, in the time domain."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 
@@ -10,9 +9,11 @@ from identification.affine_estimate import AffineEstimate
 from identification.affine_state_space import AffineStateSpace, frozen_matrices, propagate, simulate_matrices
 from identification.arrays import FloatArray
 from identification.errors import MisuseError, NotIdentifiableError, RangeError
-from identification.lpv.periodic_observability import common_basis, periodic_observability
 from identification.outcome import Outcome
-from identification.varying import TOLERANCE, VaryingRecord, scheduling_period
+from identification.varying.affine_parameters import stated_order
+from identification.varying.periodic_observability import common_basis, periodic_observability
+from identification.varying.progress import Progress, silent
+from identification.varying.records import TOLERANCE, VaryingRecord, scheduling_period
 
 REGULARISATIONS = tuple(10.0**k for k in range(-8, 5))
 AMBIGUOUS = 0.995
@@ -30,8 +31,10 @@ class PeriodicMoesp:
     it; it can start `PeriodicLikelihood`.
     """
 
+    kind: ClassVar[str] = "periodic_moesp"
+
     window: Annotated[int | None, "d, samples of past and future; when not given n_x + 3, at most T"] = None
-    regularisations: Annotated[Sequence[float], "ν, relative to the kernel of the scheduling, tried one by one"] = (
+    regularisations: Annotated[tuple[float, ...], "ν, relative to the kernel of the scheduling, tried one by one"] = (
         REGULARISATIONS
     )
     varying_output: Annotated[bool, "whether C depends on the scheduling"] = True
@@ -44,20 +47,29 @@ class PeriodicMoesp:
         if self.selection_samples < 10:
             raise RangeError("selection_samples must be ten or more", "selection_samples")
 
-    def estimate(self, record: VaryingRecord, order: int, validation: VaryingRecord | None = None) -> AffineEstimate:
+    def estimate(
+        self,
+        record: VaryingRecord,
+        order: int | None,
+        *,
+        validation: VaryingRecord | None = None,
+        progress: Progress = silent,
+    ) -> AffineEstimate:
         """The model of order n_x; `validation` starts from rest. The advice says which ν was chosen.
 
         Raises MisuseError for scheduling that is not periodic, RangeError for a window outside T ≥ d > n_x,
         NotIdentifiableError for records too short, excitation of too low a rank, or when no ν gives a model that can be
         simulated.
         """
+        order = stated_order(order)
         period = scheduling_period(record, self.tolerance)
         window = self._window(order, period)
         fitted = record if validation is not None else record.part(0, len(record) - len(record) // 5)
         weights = _weights(record.scheduling[:period])
         observability = periodic_observability(fitted.input, fitted.output, period, window, order)
         scored, n_y = [], record.output.shape[1]
-        for regularisation in self.regularisations:
+        for i, regularisation in enumerate(self.regularisations):
+            progress(i / len(self.regularisations), f"regularisation {regularisation:g}")
             common = common_basis(observability.bases, weights, n_y, regularisation, self.varying_output)
             a, c = affine_dynamics(common.bases, weights, n_y, self.varying_output)
             error, model = self._validated(fitted, record, validation, a, c)
@@ -74,6 +86,11 @@ class PeriodicMoesp:
         exact = common_basis(observability.bases, weights, n_y, min(self.regularisations), self.varying_output)
         advice = f"regularisation {chosen:g} was chosen" + self._ambiguity(exact.correlations, order)
         return AffineEstimate(model, Outcome("converged", advice, len(scored)), ())
+
+    @classmethod
+    def example(cls) -> "PeriodicMoesp":
+        """A small one, for the conformance tests."""
+        return cls(varying_output=False)
 
     def _ambiguity(self, correlations: FloatArray, order: int) -> str:
         if len(correlations) <= order or correlations[order] < AMBIGUOUS:

@@ -1,0 +1,1 @@
+"""Estimators from records in which the scheduling varies, one a file, and what they stand on."""
