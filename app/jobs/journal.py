@@ -4,7 +4,7 @@ A run is known by the job and its attempt. Reports of a run that is no longer th
 again after a crash) change nothing, so nothing can be recorded twice.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
 from typing import Any
 
@@ -13,6 +13,7 @@ from sqlalchemy.orm import Session
 
 from app.jobs import problems
 from app.jobs.hub import Hub
+from app.jobs.outcomes import Made
 from app.jobs.records import ClaimedJob
 from app.jobs.transitions import move, tell
 from app.store.database import Database
@@ -77,11 +78,13 @@ class Journal:
                     tell(session, row, "progress")
         self._hub.notify()
 
-    def succeed(self, run: Run, document: dict[str, Any], arrays: str | None) -> bool:
+    def succeed(self, run: Run, document: dict[str, Any], arrays: str | None, beside: Sequence[Made] = ()) -> bool:
         """Keep what a run made and finish its job, together; False when it is no longer the present run."""
         with self._database.write() as session:
             row = _present(session, run)
             if row is not None:
+                for made in beside:
+                    add_resource(session, _beside(made))
                 add_resource(session, _resource(row, document, arrays))
                 row.fraction, row.message = 1.0, "done"
                 move(session, row, "succeeded")
@@ -128,6 +131,10 @@ def _fail(session: Session, row: JobRow, problem: dict[str, Any]) -> None:
     row.problem = problem
     row.message = "failed"
     move(session, row, "failed")
+
+
+def _beside(made: Made) -> Resource:
+    return Resource(made.identifier, made.kind, made.plant_id, None, datetime.now(UTC), made.document, made.arrays)
 
 
 def _resource(row: JobRow, document: dict[str, Any], arrays: str | None) -> Resource:

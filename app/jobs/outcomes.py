@@ -5,11 +5,23 @@ from typing import Any
 
 
 @dataclass(frozen=True)
+class Made:
+    """A further resource that a task has made: its collection, such as "models", and an identifier of its own."""
+
+    kind: str
+    identifier: str
+    plant_id: str | None
+    document: dict[str, Any]
+    arrays: str | None = None
+
+
+@dataclass(frozen=True)
 class Succeeded:
     """The task returned."""
 
     document: dict[str, Any]
     arrays: str | None
+    beside: tuple[Made, ...] = ()
 
 
 @dataclass(frozen=True)

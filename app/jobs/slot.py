@@ -90,8 +90,8 @@ class Slot:
         run = (job.id, job.attempt)
         memory_limit = self._settings.job_memory_limit_bytes
         match outcome:
-            case Succeeded(document, arrays):
-                self._journal.succeed(run, document, arrays)
+            case Succeeded(document, arrays, beside):
+                self._journal.succeed(run, document, arrays, beside)
             case Refused(message, field):
                 self._journal.fail(run, problems.misuse(message, field))
             case OutOfMemory():

@@ -5,6 +5,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
+from app.jobs.outcomes import Made
 from app.store.arrays import ArrayStore
 
 SECONDS_BETWEEN_REPORTS = 0.25
@@ -13,10 +14,14 @@ LONGEST_MESSAGE = 300
 
 @dataclass(frozen=True)
 class TaskResult:
-    """What a job made: the document of the new resource (plain JSON, no NaN) and the hash of its arrays."""
+    """What a job made: the document of the new resource (plain JSON, no NaN) and the hash of its arrays.
+
+    `beside`: further resources, kept together with it, before it and in this order; its document should name them.
+    """
 
     document: dict[str, Any]
     arrays: str | None = None
+    beside: tuple[Made, ...] = ()
 
 
 @dataclass

@@ -65,8 +65,8 @@ def _run(module: str, payload: dict[str, Any], job_id: str, attempt: int) -> Suc
     from app.jobs.discovery import load_task
 
     result = load_task(module).run(payload, _context(job_id, attempt))
-    json.dumps(result.document, allow_nan=False)
-    return Succeeded(result.document, result.arrays)
+    json.dumps([result.document, *(one.document for one in result.beside)], allow_nan=False)
+    return Succeeded(result.document, result.arrays, result.beside)
 
 
 def _outcome_of(error: BaseException) -> TaskOutcome:

@@ -17,8 +17,10 @@ from app.errors import ConflictError, NotFoundError, UnprocessableError
 from app.jobs.hub import Hub
 from app.jobs.journal import PATIENT_ATTEMPTS, Journal, Run
 from app.jobs.ledger import Ledger
+from app.jobs.outcomes import Made
 from app.jobs.records import FINAL_STATES, JobRecord
 from app.store.database import Database
+from app.store.identifiers import new_identifier
 from app.store.resources import ResourceRepository
 
 MOST_ATTEMPTS = 3
@@ -133,6 +135,20 @@ def test_a_run_that_is_over_can_report_nothing(books: Books) -> None:
     assert books.journal.succeed(present, {"run": "present"}, None)
     assert not books.journal.succeed(present, {"run": "again"}, None)
     assert [r.document for r in books.resources.list("trials").items] == [{"run": "present"}]
+
+
+def test_what_a_run_makes_beside_is_kept_with_the_rest_or_not_at_all(books: Books) -> None:
+    books.submit()
+    first, second = (Made("versions", new_identifier(), None, {"number": number}) for number in (1, 2))
+    stale = books.claim()
+    books.journal.recover(MOST_ATTEMPTS)
+    present = books.claim()
+    assert not books.journal.succeed(stale, {}, None, [first])
+    with pytest.raises(StatementError, match="not JSON compliant"):
+        books.journal.succeed(present, {"value": float("nan")}, None, [first])
+    assert not books.resources.list("versions").items
+    assert books.journal.succeed(present, {}, None, [first, second])
+    assert [r.document["number"] for r in books.resources.list("versions").items] == [2, 1]
 
 
 def test_a_resource_that_cannot_be_kept_leaves_the_job_running(books: Books) -> None:
