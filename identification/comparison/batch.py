@@ -20,8 +20,8 @@ class Batch:
     `points` (M, s); `omega` (K,) rad/s; `inputs`, `outputs` (M, K) in the units of the plant; `variances` (M, K)
     E|n|² of the noise on `outputs` (twice that of the real number at ω = 0 and the Nyquist frequency), infinite for
     lines that are not compared; `classes` (M, K) of EXCITED, ODD, EVEN; `freedom` (K,) real degrees of freedom of
-    each σ̂², `raw_freedom` those that one line brings by itself (infinite where σ is known exactly); `half_width`
-    lines to each side were pooled. `signals` (M, L) the input over one period, None for frequency responses.
+    each σ̂², `raw_freedom` those that one line brings by itself (infinite where σ is known exactly); windows of
+    2 `half_width` + 1 lines were pooled. `signals` (M, L) the input over one period, None for frequency responses.
     `scaled`: False when only the ratios of the variances are known. `members`: places in the user's list.
     """
 
@@ -69,11 +69,6 @@ class Batch:
     def row_count(self) -> int:
         """How many real numbers are compared."""
         return int(self.compared.sum())
-
-    @property
-    def independent_freedom(self) -> float:
-        """Real degrees of freedom of all the noise variances together."""
-        return float(self.raw_freedom * np.isfinite(self.variances).sum())
 
     def whiten(self, spectra: ComplexArray) -> FloatArray:
         """Spectra (…, M, K) as rows of unit variance (…, M·2·K): real parts, then imaginary parts, of each record."""

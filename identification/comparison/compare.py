@@ -11,6 +11,7 @@ from identification.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from identification.comparison.batch import CLASS_NAMES, EXCITED, Batch
 from identification.comparison.between import strongest_line
 from identification.comparison.lack_of_fit import lack_of_fit
+from identification.comparison.noise import noise_freedom
 from identification.errors import MisuseError
 from identification.extension.fit import Fit, fit
 from identification.extension.model import ExtendedModel, require_matching
@@ -80,8 +81,7 @@ class _Judge:
         return lack_of_fit(name, energy, freedom, self._noise_freedom(chosen))
 
     def _noise_freedom(self, chosen: BoolArray) -> float:
-        parts = zip(self.rows.batches, self.rows.parts(chosen.astype(np.float64)), strict=True)
-        return sum(batch.raw_freedom * float(part.sum()) / 2 for batch, part in parts)
+        return noise_freedom(self.rows.batches, self.rows.parts(chosen / max(float(chosen.sum()), 1.0)))
 
 
 def compare(model: ExtendedModel, batches: Sequence[Batch], fitted: bool = True) -> Comparison:
@@ -233,7 +233,7 @@ def _split(
         basis = orthonormal(local[:, chosen].T)
         explained += float(np.sum((basis.T @ judge.residual[chosen]) ** 2))
         ranks += basis.shape[1]
-    noise = sum(batch.independent_freedom for batch in rows.batches)
+    noise = rows.noise_freedom
     freedom = ranks - rows_rank(judge)
     left = lack_of_fit("one LTI model per operating point", overall.statistic - explained, rows.count - ranks, noise)
     name = "dependence on the operating point"

@@ -3,24 +3,22 @@
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.ndimage import uniform_filter1d
 
 from identification.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from identification.comparison.batch import EVEN, EXCITED, ODD, Batch
+from identification.comparison.noise import variance_of_mean
 from identification.errors import MisuseError
 from identification.response_tests import real_lines
 from identification.signals import FrequencyResponse, Measurement, TimeRecord
 from identification.spectral.local_polynomial import LocalPolynomial
 from identification.spectral.periodic_average import PeriodicAverage, excited_lines
 
-NEIGHBOURS = 7
-
 
 def gather(experiments: Sequence[Measurement], mean_value: bool = True) -> tuple[Batch, ...]:
     """Batches of the experiments, those on the same grid together, in the order in which the grids first occur.
 
     Periodic records give their mean spectrum at all lines of the period, excited or not, with the variance from how
-    the periods differ, pooled over the seven lines to each side; other records the frequency response that the local
+    the periods differ, pooled over fifteen lines; other records the frequency response that the local
     polynomial method finds. `mean_value` keeps the line at ω = 0 of periodic records.
     """
     if not experiments:
@@ -125,24 +123,11 @@ def _of_periodic(m: int, record: TimeRecord, mean_value: bool) -> Batch:
 
 
 def _noise(u: ComplexArray, y: ComplexArray, excited: BoolArray, real: BoolArray) -> tuple[FloatArray, float, int]:
-    """Variance of the mean spectrum at each line, the real degrees of freedom it has, and the lines pooled each side.
-
-        σ̂_k² = mean over |k' − k| ≤ w of Σ_p |E_k'p − Ē_k'|² / (P(P − 1)),   E = Y − Ĝ U;   2(P − 1)(2w + 1) degrees
-
-    [PintelonSchoukens2012, Section 2.5]; noise on the input counts where the input is excited.
-    """
-    count, lines = y.shape
+    """The variance of the mean spectrum from how E = Y − Ĝ U differs: noise on the input counts where it is excited."""
     ratio = np.where(excited, y.mean(axis=0) / np.where(excited, u.mean(axis=0), 1.0), 0.0)
-    errors = y - ratio * u
-    power = np.var(errors, axis=0, ddof=1) / count
-    power[0] = power[1]
-    if real[-1]:
-        power[-1] = power[-2]
-    half_width = min(NEIGHBOURS, (lines - 1) // 2)
-    pooled = uniform_filter1d(power, 2 * half_width + 1, mode="reflect")
+    variance, freedom, half_width = variance_of_mean(y - ratio * u, real)
     smallest = 1e-26 * float(np.mean(abs(y) ** 2)) + float(np.finfo(np.float64).tiny)
-    variance = np.asarray(np.maximum(pooled, smallest) * np.where(real, 2.0, 1.0), dtype=np.float64)
-    return variance, 2.0 * (count - 1) * (2 * half_width + 1), half_width
+    return np.maximum(variance, smallest), freedom, half_width
 
 
 def _classes(excited: BoolArray) -> IntArray:

@@ -123,11 +123,11 @@ def diagnose(
 
 def misfit(name: str, found: Fit) -> TestResult:
     """Lack of fit of a fitted model; nothing to test (p = 1) where the size of the noise is not known."""
-    batches, energy = found.rows.batches, float(found.residual @ found.residual)
+    energy = float(found.residual @ found.residual)
     freedom = found.rows.count - len(found.tangents)
     if not found.rows.scaled:
         return TestResult(name, energy, float(freedom), 1.0)
-    return lack_of_fit(name, energy, freedom, sum(batch.independent_freedom for batch in batches))
+    return lack_of_fit(name, energy, freedom, found.rows.noise_freedom)
 
 
 def _explained_share(base: Fit, announced: Sequence[Evidence]) -> float:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from identification.arrays import FloatArray
-from identification.comparison.batch import Batch
+from identification.comparison.noise import noise_freedom
 from identification.extension.fit import Fit
 from identification.extension.model import PlacedEffect, placed
 from identification.extension.rows import effect_tangents
@@ -95,22 +95,3 @@ def _signature(fit: Fit, one: PlacedEffect, changes: FloatArray, projected: Floa
     weight = np.sum(basis**2, axis=0) / len(basis)
     freedom = noise_freedom(fit.rows.batches, fit.rows.parts(weight))
     return Signature(one, basis, basis @ projected.T, float(after.max() / before.max()), freedom)
-
-
-def noise_freedom(batches: Sequence[Batch], weights: Sequence[FloatArray]) -> float:
-    """Degrees of freedom ν of Σ w_i r_i², w ≥ 0 of sum one, as far as the noise variances are random.
-
-        2/ν = var Σ_k w_k δ_k = Σ_k (w ∗ window)_k² 2/ν₁,   δ_k the mean of the relative errors in the window of line k
-
-    ν₁ are the degrees of freedom that each line brings; infinite when the variances are known.
-    """
-    total = 0.0
-    for batch, weight in zip(batches, weights, strict=True):
-        if np.isinf(batch.raw_freedom):
-            continue
-        lines = weight.reshape(len(batch.points), 2, -1).sum(axis=1)
-        width = 2 * batch.half_width + 1
-        sums = np.cumsum(np.pad(lines, ((0, 0), (batch.half_width + 1, batch.half_width))), axis=1)
-        smoothed = (sums[:, width:] - sums[:, :-width]) / width
-        total += float(np.sum(smoothed**2)) / batch.raw_freedom
-    return 1 / total if total > 0 else np.inf

@@ -7,6 +7,7 @@ import numpy as np
 
 from identification.arrays import ComplexArray, FloatArray
 from identification.comparison.batch import Batch
+from identification.comparison.noise import noise_freedom
 from identification.extension.model import ExtendedModel, PlacedEffect, amplitude_basis
 from identification.places.place import Effect, Flow
 
@@ -43,6 +44,12 @@ class Rows:
     def count(self) -> int:
         """How many real numbers are compared."""
         return sum(batch.row_count for batch in self.batches)
+
+    @property
+    def noise_freedom(self) -> float:
+        """Real degrees of freedom of the noise variances in the mean of the squares of all rows."""
+        weights = [batch.compared / self.count for batch in self.batches]
+        return noise_freedom(self.batches, weights)
 
     @property
     def scaled(self) -> bool:

@@ -8,6 +8,7 @@ from identification.comparison.between import strongest_line
 from identification.comparison.gather import gather
 from identification.comparison.lack_of_fit import lack_of_fit
 from identification.errors import MisuseError
+from identification.extension.rows import Rows
 from identification.signals import FrequencyResponse, TimeRecord
 from tests.support.oscillators import LINES, PERIOD, SAMPLE_TIME, batches, clean_records
 
@@ -52,7 +53,7 @@ def test_the_test_of_lack_of_fit_has_its_size_with_few_periods():
         u = np.tile(np.sin(2 * np.pi * 3 * np.arange(64) / 64), 2)
         (batch,) = gather([TimeRecord(u, g.standard_normal(128), 0.5, (0.0,), 64)])
         energy = float(np.sum(batch.whiten(batch.outputs) ** 2))
-        small.append(lack_of_fit("", energy, batch.row_count, batch.independent_freedom).p_value < 0.05)
+        small.append(lack_of_fit("", energy, batch.row_count, Rows((batch,)).noise_freedom).p_value < 0.05)
     assert 0.02 < np.mean(small) < 0.085
 
 

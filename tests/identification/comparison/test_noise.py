@@ -1,0 +1,77 @@
+"""Noise variances of mean spectra: unbiased for steep spectra, pooled alike everywhere, with their own freedom."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.signal import lfilter
+from scipy.stats import kstest
+
+from identification.comparison.gather import gather
+from identification.comparison.lack_of_fit import lack_of_fit
+from identification.comparison.noise import noise_freedom, pooled, spread_back, variance_of_mean
+from identification.extension.rows import Rows
+from identification.signals import TimeRecord
+from tests.support.oscillators import batches
+
+
+def noise_alone(seed, pole, period=256, count=4, records=4):
+    """Records of nothing but noise of an autoregression."""
+    g = np.random.default_rng(seed)
+    u = np.tile(np.sin(2 * np.pi * 3 * np.arange(period) / period), count)
+    noise = lfilter([1.0], [1.0, -pole], g.standard_normal((records, period * count + 100)))[:, 100:]
+    return Rows(gather([TimeRecord(u, y, 0.5, (0.0,), period) for y in noise]))
+
+
+def energies(pole, runs=150):
+    found = []
+    for seed in range(runs):
+        rows = noise_alone(seed, pole)
+        energy = sum(float(np.sum(batch.whiten(batch.outputs) ** 2)) for batch in rows.batches)
+        found.append((energy, rows.count, rows.noise_freedom))
+    return found
+
+
+@pytest.mark.parametrize("pole", [0.0, 0.9, -0.8])
+def test_residuals_of_coloured_noise_have_unit_variance_and_lack_of_fit_is_uniform(pole):
+    """A window over the steep spectrum, or its leakage left in, makes every p too large."""
+    found = energies(pole)
+    assert np.mean([energy / count for energy, count, _ in found]) == pytest.approx(1.0, abs=0.012)
+    assert kstest([lack_of_fit("", *one).p_value for one in found], "uniform").pvalue > 5e-3
+
+
+REAL = np.arange(40) == 0
+
+
+def test_short_periods_are_pooled_as_they_are():
+    errors = np.random.default_rng(0).standard_normal((3, 9)) + 0j
+    variance, freedom, half_width = variance_of_mean(errors, np.arange(9) % 8 == 0)
+    assert (freedom, half_width) == (2.0 * 2 * 7, 3)
+    assert np.allclose(variance, variance[1] * np.where(np.arange(9) % 8 == 0, 2, 1))
+
+
+def test_every_window_holds_as_many_lines_and_no_real_one():
+    values = np.zeros(40)
+    values[1] = 1.0
+    assert np.allclose(pooled(np.ones(40), 7, REAL), 1.0)
+    assert np.count_nonzero(pooled(values, 7, REAL)) == 9
+    assert np.all(pooled(1.0 * REAL, 7, REAL) == 0)
+
+
+def test_spreading_back_is_the_adjoint_of_pooling():
+    g = np.random.default_rng(1)
+    x, w = g.random(40), g.random((3, 40))
+    assert np.allclose(w @ pooled(x, 7, REAL), spread_back(w, 7, REAL) @ x)
+
+
+def test_few_periods_give_student_not_normal():
+    """The window's degrees of freedom for a signature in one place, all of them for one that is everywhere."""
+    (batch,) = batches()
+    one, all_lines = np.zeros((2, len(batch.compared)))
+    one[20] = 1.0
+    all_lines[:] = batch.compared / batch.row_count
+    everything = batch.raw_freedom * np.isfinite(batch.variances).sum()
+    assert noise_freedom([batch], [one]) == pytest.approx(batch.raw_freedom * (2 * batch.half_width + 1), rel=0.01)
+    assert 0.8 * everything < noise_freedom([batch], [all_lines]) <= everything
+    known = replace(batch, raw_freedom=np.inf, freedom=np.inf)
+    assert noise_freedom([known], [one]) == np.inf
