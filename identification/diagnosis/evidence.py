@@ -1,6 +1,6 @@
 """Refit of the short list, and how much each effect then explains."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -9,11 +9,13 @@ from identification.arrays import FloatArray
 from identification.diagnosis.scores import Score
 from identification.extension.fit import Fit, fit
 from identification.extension.model import PlacedEffect
+from identification.extension.rows import Rows
 from identification.places.simulate import NoSteadyStateError
 
 SHORT_LIST = 8
 STARTS = 2
 LIKELY = 6.0
+ALIKE = 2.0
 HOPELESS = 60.0
 
 
@@ -21,7 +23,8 @@ HOPELESS = 60.0
 class Evidence:
     """An effect after its refit with θ; `explained`: the fall of minus twice the log-likelihood; low `bic` is good.
 
-    `weight`: share of exp(−BIC/2) among the short list and the model as it is.
+    `weight`: share of exp(−BIC/2) among the short list and the model as it is. Both count the residuals of noise of
+    unknown size as `effective_count` does.
     """
 
     score: Score
@@ -42,31 +45,69 @@ def refit_short_list(base: Fit, scores: Sequence[Score], length: int = SHORT_LIS
 
         BIC = −2 ln L + (number of parameters) ln R,   weight ∝ exp(−BIC/2)
 
-    Further parameters that are searched but not fitted cost 2 ln(number of variants).
+    Further parameters that are searched but not fitted cost 2 ln(number of variants). Where the size of the noise is
+    not known, R is the effective number of residuals of the best refit, and ln L is that of so many.
     """
     ordered = sorted(scores, key=lambda score: -score.statistic)[:length]
-    found: list[Evidence] = []
+    found: list[tuple[Score, Fit]] = []
     least = np.inf
     for score in ordered:
         one = _refitted(base, score, least + HOPELESS)
         if one is not None:
-            found.append(one)
-            least = min(least, float(one.fit.residual @ one.fit.residual))
-    return tuple(sorted(_weighted(base, found), key=lambda one: one.bic))
+            found.append((score, one))
+            least = min(least, float(one.residual @ one.residual))
+    if not found:
+        return ()
+    best = min((one for _, one in found), key=lambda one: one.cost)
+    count = effective_count(best.rows, best.residual)
+    return tuple(sorted(_weighted(base, [_judged(base, *one, count) for one in found]), key=lambda one: one.bic))
 
 
-def _refitted(base: Fit, score: Score, hopeless: float) -> Evidence | None:
+def effective_count(rows: Rows, residual: FloatArray) -> float:
+    """How many independent numbers a whitened residual (R,) is worth: R where the size of the noise is known.
+
+    Otherwise the errors are mostly those of the model, smooth over frequency and alike at all operating points, and R
+    would overstate every difference of likelihoods. From each batch Z (2M, K) of real and imaginary parts,
+
+        ρ = Σ z_ck z_c,k+1 / Σ z_ck²,   K (1 − ρ)/(1 + ρ) (Σ s_i²)²/Σ s_i⁴,   s the singular values of Z
+
+    the number of independent values of a first-order autoregression, times the number of records that do not repeat
+    each other; two at least, R at most [Bartlett1946].
+    """
+    if rows.scaled:
+        return float(rows.count)
+    total = 0.0
+    for batch, compared, part in zip(rows.batches, rows.parts(_compared(rows)), rows.parts(residual), strict=True):
+        z = part.reshape(-1, len(batch.omega))
+        energy = np.linalg.svd(z, compute_uv=False) ** 2
+        if batch.scaled or not energy.sum() > 0:
+            total += float(compared.sum())
+            continue
+        rho = np.clip(np.sum(z[:, 1:] * z[:, :-1]) / np.sum(z**2), 0.0, 1 - 1e-6)
+        repeats = energy.sum() ** 2 / np.sum(energy**2)
+        total += float(min(z.shape[1] * (1 - rho) / (1 + rho) * repeats, compared.sum()))
+    return max(total, 2.0)
+
+
+def _compared(rows: Rows) -> FloatArray:
+    return np.concatenate([batch.compared for batch in rows.batches]).astype(np.float64)
+
+
+def _judged(base: Fit, score: Score, found: Fit, count: float) -> Evidence:
+    effect = found.model.effects[-1]
+    parameters = len(effect.parameters())
+    searched = 0.0 if effect.effect.fitted_names() else 2 * np.log(max(_tried(score), 1))
+    explained = (base.cost - found.cost) * count / base.rows.count
+    bic = base.cost - explained + parameters * np.log(count) + searched
+    return Evidence(score, found, explained, parameters, float(bic))
+
+
+def _refitted(base: Fit, score: Score, hopeless: float) -> Fit | None:
     fits = [one for start in _starts(base, score) if (one := _attempt(base, score, start, hopeless)) is not None]
     if not fits:
         return None
     best = min(fits, key=lambda one: one.cost)
-    effect = best.model.effects[-1]
-    if _outside(effect, best):
-        return None
-    parameters = len(effect.parameters())
-    searched = 0.0 if effect.effect.fitted_names() else 2 * np.log(max(_tried(score), 1))
-    penalty = parameters * np.log(base.rows.count) + searched
-    return Evidence(score, best, base.cost - best.cost, parameters, float(best.cost + penalty))
+    return None if _outside(best.model.effects[-1], best) else best
 
 
 def _outside(one: PlacedEffect, found: Fit) -> bool:
@@ -125,7 +166,17 @@ def _weighted(base: Fit, found: Sequence[Evidence]) -> list[Evidence]:
 
 
 def indistinguishable(ordered: Sequence[Evidence], share: float = 0.95) -> tuple[Evidence, ...]:
-    """The smallest set of effects with this share of the weight, and all whose BIC is within 6 of the best."""
+    """The smallest set of effects with this share of the weight, and all whose BIC is within 6 of the best.
+
+    Where the size of the noise is not known: those whose BIC is within 2 of the best, a difference not worth more than
+    a bare mention [KassRaftery1995], and whose signature is mostly that of the best, as others may be missing as well
+    and not instead; the simplest of them first.
+    """
+    if ordered and not ordered[0].fit.rows.scaled:
+        best = ordered[0]
+        alike = [one for one in ordered if one.bic <= best.bic + ALIKE and overlap(one, best) > 0.5]
+        first = simplest(alike)
+        return (first, *(one for one in alike if one is not first))
     kept: list[Evidence] = []
     total = sum(one.weight for one in ordered)
     for one in ordered:
@@ -134,3 +185,28 @@ def indistinguishable(ordered: Sequence[Evidence], share: float = 0.95) -> tuple
             break
         kept.append(one)
     return tuple(kept)
+
+
+def overlap(one: Evidence, other: Evidence) -> float:
+    """The largest squared cosine between the projected signatures of two effects."""
+    product = one.score.signature.basis @ other.score.signature.basis.T
+    return float(np.linalg.norm(product, 2) ** 2)
+
+
+def simplest(alike: Sequence[Evidence]) -> Evidence:
+    """The effect with the fewest parameters, then states, then one of the plant's own domain, of those that fit alike.
+
+    After each of the three questions only those within 2 of the best BIC among the remaining ones stay.
+    """
+    questions: tuple[Callable[[Evidence], float], ...] = (
+        lambda one: one.parameters,
+        lambda one: one.score.candidate.effect.states,
+        lambda one: one.score.candidate.effect.domain == "general",
+    )
+    left = list(alike)
+    for question in questions:
+        least = min(question(one) for one in left)
+        left = [one for one in left if question(one) == least]
+        best = min(one.bic for one in left)
+        left = [one for one in left if one.bic <= best + ALIKE]
+    return min(left, key=lambda one: one.bic)

@@ -22,6 +22,7 @@ class Antiresonance(Factor):
     title: ClassVar[str] = "anti-resonance"
     unit: ClassVar[str] = "1"
     source: ClassVar[str] = "[PintelonSchoukens2012, Section 1.3]"
+    states: ClassVar[float] = 2
     sign: ClassVar[int] = 1
     parameters: ClassVar[tuple[FurtherParameter, ...]] = (
         FurtherParameter(

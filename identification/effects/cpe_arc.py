@@ -22,6 +22,7 @@ class CpeArc(Parallel):
     domain: ClassVar[str] = "impedance"
     unit: ClassVar[str] = "output unit per input unit"
     source: ClassVar[str] = "[Barsoukov2005, Section 2.1]"
+    states: ClassVar[float] = float("inf")
     sign: ClassVar[int] = 1
     parameters: ClassVar[tuple[FurtherParameter, ...]] = (
         FurtherParameter("time", "time", (0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8)),

@@ -18,6 +18,7 @@ class Delay(Factor):
     unit: ClassVar[str] = "s"
     source: ClassVar[str] = "[Ljung1999, Section 4.2]"
     sign: ClassVar[int] = 1
+    states: ClassVar[float] = float("inf")
 
     def shape(self, omega: FloatArray) -> ComplexArray:
         """−jω."""

@@ -18,6 +18,7 @@ class Hysteresis(Feedback):
     domain: ClassVar[str] = "mechanical"
     unit: ClassVar[str] = "input unit"
     source: ClassVar[str] = "[Wen1976, (3)]"
+    states: ClassVar[float] = 1
     oversampling: ClassVar[int] = 8
     sign: ClassVar[int] = 1
     parameters: ClassVar[tuple[FurtherParameter, ...]] = (FurtherParameter("travel", "output", (0.05, 0.15, 0.4, 1.0)),)

@@ -18,6 +18,7 @@ class Integrator(Parallel):
     unit: ClassVar[str] = "output unit per input unit and second"
     sign: ClassVar[int] = 1
     source: ClassVar[str] = "[Ljung1999, Section 4.2]"
+    states: ClassVar[float] = 1
 
     def shape(self, omega: FloatArray) -> ComplexArray:
         """1/(jω), nothing at ω = 0."""

@@ -18,6 +18,7 @@ class Lag(Factor):
     unit: ClassVar[str] = "s"
     source: ClassVar[str] = "[Ljung1999, Section 4.2]"
     sign: ClassVar[int] = 1
+    states: ClassVar[float] = 1
 
     def shape(self, omega: FloatArray) -> ComplexArray:
         """−jω."""

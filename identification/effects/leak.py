@@ -22,6 +22,7 @@ class Leak(Factor):
     unit: ClassVar[str] = "rad/s"
     source: ClassVar[str] = "[PintelonSchoukens2012, Section 2.5]"
     sign: ClassVar[int] = 1
+    states: ClassVar[float] = 1
 
     def shape(self, omega: FloatArray) -> ComplexArray:
         """j/ω, nothing at ω = 0."""

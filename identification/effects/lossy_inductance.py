@@ -19,6 +19,7 @@ class LossyInductance(Parallel):
     domain: ClassVar[str] = "impedance"
     unit: ClassVar[str] = "output unit per input unit · s^α"
     source: ClassVar[str] = "[Barsoukov2005, Section 2.1]"
+    states: ClassVar[float] = float("inf")
     sign: ClassVar[int] = 1
     parameters: ClassVar[tuple[FurtherParameter, ...]] = (
         FurtherParameter("exponent", "number", (0.4, 0.6, 0.8), lowest=0.3, highest=0.9),

@@ -21,6 +21,8 @@ class Resonance(Parallel):
     title: ClassVar[str] = "extra resonance"
     unit: ClassVar[str] = "output unit per input unit · rad²/s²"
     source: ClassVar[str] = "[PintelonSchoukens2012, Section 1.3]"
+    within: ClassVar[bool] = True
+    states: ClassVar[float] = 2
     parameters: ClassVar[tuple[FurtherParameter, ...]] = (
         FurtherParameter(
             "frequency", "frequency", (0.1, 0.2, 0.3, 0.4, 0.45, 0.5, 0.55, 0.6, 0.65, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95)

@@ -18,6 +18,7 @@ class Warburg(Parallel):
     domain: ClassVar[str] = "impedance"
     unit: ClassVar[str] = "output unit per input unit · s^{-1/2}"
     source: ClassVar[str] = "[Barsoukov2005, Section 2.1]"
+    states: ClassVar[float] = float("inf")
     sign: ClassVar[int] = 1
 
     def shape(self, omega: FloatArray) -> ComplexArray:

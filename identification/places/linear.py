@@ -38,14 +38,18 @@ class Factor(Effect):
         """∂Y/∂e (1, M, K)."""
         column, omega = e[0][:, None], flow.batch.omega
         relative = self.slope(column, omega) / self.factor(column, omega)
-        return np.asarray((relative * flow.core * flow.factor)[None])
+        return np.asarray((relative * flow.factored)[None])
 
 
 @dataclass(frozen=True)
 class Parallel(Effect):
-    """Adds to the response of the plant: Y = (G + e s(ω)) U."""
+    """Adds to the response of the plant: Y = (G + e s(ω)) U.
+
+    `within`: it is a part of the plant, that is seen through the same filters and delays, and not a path beside them.
+    """
 
     place: ClassVar[str] = "added to the linear response"
+    within: ClassVar[bool] = False
 
     @abstractmethod
     def shape(self, omega: FloatArray) -> ComplexArray:
@@ -57,7 +61,8 @@ class Parallel(Effect):
 
     def tangent(self, e: FloatArray, flow: Flow) -> ComplexArray:
         """∂Y/∂e (shapes, M, K)."""
-        return np.asarray(np.atleast_2d(self.shape(flow.batch.omega))[:, None, :] * flow.drive)
+        shapes = np.atleast_2d(self.shape(flow.batch.omega))[:, None, :]
+        return np.asarray(shapes * flow.drive * (flow.factor if self.within else 1.0))
 
 
 @dataclass(frozen=True)

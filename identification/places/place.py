@@ -55,7 +55,8 @@ class Flow:
 
     `setting.zeta` includes what effects change of it; `response` (M, K) of the plant core; `gradient`
     (M, n_plant, K) its derivative by ζ_G; `drive` U (M, K) what enters the core; `core` X (M, K) what leaves it;
-    `linear` (M, K) after all that acts linearly; `output` (M, K).
+    `factored` (M, K) that and the modes beside it, times all factors; `linear` (M, K) after all that acts linearly;
+    `output` (M, K).
     """
 
     batch: Batch
@@ -64,6 +65,7 @@ class Flow:
     gradient: ComplexArray
     drive: ComplexArray
     core: ComplexArray
+    factored: ComplexArray
     linear: ComplexArray
     output: ComplexArray
     factor: ComplexArray
@@ -125,7 +127,8 @@ class Effect(ABC):
 
     `domain`: the kind of plant it belongs to; `unit` of e in words, `sign` +1 where only e ≥ 0 is physical, `largest`
     the largest physical |e| (None: no bound), `source` where it is described; `oversampling` of the time grid on which
-    a force is computed in continuous time; `shapes` the number of amplitudes.
+    a force is computed in continuous time; `shapes` the number of amplitudes; `states` by how many it raises the order
+    of the plant, infinite for distributed effects such as a delay or diffusion.
     """
 
     kind: ClassVar[str]
@@ -139,6 +142,7 @@ class Effect(ABC):
     needs_records: ClassVar[bool] = False
     shapes: ClassVar[int] = 1
     oversampling: ClassVar[int] = 2
+    states: ClassVar[float] = 0
     parameters: ClassVar[tuple[FurtherParameter, ...]] = ()
 
     @classmethod

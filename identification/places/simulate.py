@@ -24,7 +24,7 @@ class NoSteadyStateError(MisuseError):
 def simulate(setting: Setting, acting: Sequence[Acting], batch: Batch, start: ComplexArray | None = None) -> Flow:
     """The signals of a batch at the coefficients of `setting` for effects with amplitudes e (shapes, M).
 
-        u → g(u) → [ X = G (U − F{f(x, ẋ)}) ] → · factor, + parallel → h(y) → + d(t)
+        u → g(u) → [ X = G (U − F{f(x, ẋ)}) ] → + modes → · factor, + parallel → h(y) → + d(t)
 
     `start` (M, K): X to begin the search for the fixed point with. Raises NoSteadyStateError when there is none to be
     found, and MisuseError for effects that need records when the batch holds frequency responses.
@@ -36,16 +36,18 @@ def simulate(setting: Setting, acting: Sequence[Acting], batch: Batch, start: Co
     response = _response(setting, acting, batch)
     entering = _actuated(setting, acting, batch)
     core, drive = _core(response, entering, _forces(acting), batch, start, _finer(setting, acting, Feedback))
-    factor = np.ones_like(response)
-    linear = np.zeros_like(core)
+    factor, within, beside = np.ones_like(response), core, np.zeros_like(core)
     for effect, e in acting:
         if isinstance(effect, Factor):
             factor = factor * effect.factor(e[0][:, None], batch.omega)
+        elif isinstance(effect, Parallel) and effect.within:
+            within = within + effect.response(e, batch.omega) * drive
         elif isinstance(effect, Parallel):
-            linear = linear + effect.response(e, batch.omega) * drive
-    linear = linear + factor * core
+            beside = beside + effect.response(e, batch.omega) * drive
+    factored = factor * within
+    linear = factored + beside
     output = _measured(linear, acting, batch)
-    return Flow(batch, setting, response, gradient, drive, core, linear, output, factor)
+    return Flow(batch, setting, response, gradient, drive, core, factored, linear, output, factor)
 
 
 def _changed(setting: Setting, acting: Sequence[Acting]) -> Setting:

@@ -6,7 +6,10 @@ import re
 import numpy as np
 import pytest
 
+from identification.effects.delay import Delay
 from identification.effects.library import library
+from identification.effects.rc_arc import RcArc
+from identification.effects.resonance import Resonance
 from identification.effects.second_variable import SecondVariable
 from identification.extension.fit import differences, fit
 from identification.extension.model import placed
@@ -80,6 +83,15 @@ def test_its_tangent_is_that_of_its_simulation(effect):
         sides.append(MODEL.plus(dataclasses.replace(one, coefficients=coefficients)).output(BATCHES[0]))
     change = ROWS.whiten([(sides[0] - sides[1])[None]])[0] / (2 * step)
     assert np.linalg.norm(change - tangent) < 2e-2 * length
+
+
+def test_tangents_of_filters_and_modes_in_one_model_are_those_of_their_simulation():
+    """A delay moves the mode as well, but not the path beside the plant."""
+    model = MODEL.plus(placed(Resonance(9.0, 0.05), 0, 1, 2.0)).plus(placed(RcArc(0.4), 0, 1, 0.02))
+    found = fit(model.plus(placed(Delay(), 0, 1, 0.03)), ROWS, iterations=0)
+    exact = differences(found)
+    for row, column in zip(found.tangents, exact, strict=True):
+        assert np.linalg.norm(row - column) < 2e-2 * np.linalg.norm(column)
 
 
 @pytest.mark.parametrize("effect", [e for e in EFFECTS if e.fitted_names()], ids=lambda effect: effect.kind)

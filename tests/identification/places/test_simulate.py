@@ -12,6 +12,7 @@ from identification.effects.quadratic_actuator import QuadraticActuator
 from identification.effects.quadratic_damping import QuadraticDamping
 from identification.effects.quadratic_sensor import QuadraticSensor
 from identification.effects.rc_arc import RcArc
+from identification.effects.resonance import Resonance
 from identification.errors import MisuseError
 from identification.extension.model import placed
 from identification.places.simulate import NoSteadyStateError, fixed_point
@@ -56,8 +57,15 @@ def test_two_effects_at_once_and_in_different_places():
 def test_linear_effects_are_what_their_formula_says():
     t = np.arange(128) * 0.1
     assert close(modelled((Delay(), 0.05)), linear(0.5, AMPLITUDES, lambda w: np.exp(-0.05j * w)), 1e-9)
+    mode = 1 / (100 - OMEGA**2 + 1j * OMEGA)
+    shown = linear(0.5, AMPLITUDES, lambda w: np.exp(-0.05j * w)) + played(
+        mode * np.exp(-0.05j * OMEGA) * AMPLITUDES, t
+    )
+    assert close(modelled((Delay(), 0.05), (Resonance(10.0, 0.05), 1.0)), shown, 1e-9)
     arc = played(0.01 / (1 + 0.4j * OMEGA) * AMPLITUDES, t)
     assert close(modelled((RcArc(time=0.4), 0.01)), linear(0.5, AMPLITUDES) + arc, 1e-9)
+    both = linear(0.5, AMPLITUDES, lambda w: np.exp(-0.05j * w)) + arc
+    assert close(modelled((Delay(), 0.05), (RcArc(time=0.4), 0.01)), both, 1e-9)
 
 
 def test_hysteresis_takes_energy_out():
