@@ -14,6 +14,8 @@ from app import __version__
 from app.container import Container
 from app.middleware import BodyLimitGuard, LoopbackGuard, TokenGuard
 from app.openapi_schema import install_openapi, operation_id
+from app.pages.security import PageHeaders
+from app.pages.site import add_pages
 from app.problem_handlers import add_problem_handlers
 from app.settings import Settings
 
@@ -40,6 +42,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     add_problem_handlers(application)
     for router in _routers():
         application.include_router(router, prefix="/v1")
+    add_pages(application)
     install_openapi(application)
     return application
 
@@ -58,7 +61,7 @@ def _guards(settings: Settings) -> list[Middleware]:
     """Outermost first."""
     token = settings.bearer_token
     who = Middleware(LoopbackGuard) if token is None else Middleware(TokenGuard, token=token)
-    return [who, Middleware(BodyLimitGuard, most_bytes=settings.max_body_bytes)]
+    return [Middleware(PageHeaders), who, Middleware(BodyLimitGuard, most_bytes=settings.max_body_bytes)]
 
 
 def _routers() -> list[APIRouter]:

@@ -8,6 +8,7 @@ from starlette.exceptions import HTTPException
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from app.errors import BadRequestError, ContentTooLargeError, ForbiddenError, ProblemError, UnauthorizedError
+from app.pages.security import is_page
 from app.problem_handlers import answer
 from app.settings import is_loopback
 
@@ -57,14 +58,14 @@ class LoopbackGuard(Guard):
 
 
 class TokenGuard(Guard):
-    """Every request but those to OPEN_PATHS must carry the bearer token."""
+    """Every request but those to OPEN_PATHS and for pages, which hold no data, must carry the bearer token."""
 
     def __init__(self, app: ASGIApp, token: str) -> None:
         super().__init__(app)
         self._expected = token.encode()
 
     def check(self, scope: Scope, headers: Headers) -> None:
-        if scope["path"] in OPEN_PATHS:
+        if scope["path"] in OPEN_PATHS or is_page(scope["path"]):
             return
         scheme, _, given = headers.get("authorization", "").partition(" ")
         if scheme.lower() != "bearer" or not hmac.compare_digest(given.strip().encode("latin-1"), self._expected):

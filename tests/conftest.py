@@ -14,7 +14,7 @@ for _variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(_variable, "1")
 
 # A module of these folders shares a server and costly results, so its tests stay together on one worker.
-KEPT_TOGETHER = (ROOT / "tests" / "acceptance", ROOT / "tests" / "client")
+KEPT_TOGETHER = (ROOT / "tests" / "acceptance", ROOT / "tests" / "client", ROOT / "tests" / "pages")
 
 
 @pytest.hookimpl(tryfirst=True)

@@ -1,0 +1,102 @@
+// Plots by plotly.js in the colours of the page, each with a caption and the numbers behind it.
+
+import { context } from "./context.js";
+import { h } from "./dom.js";
+import { seriesColour } from "./palette.js";
+import { tableBehind } from "./tables.js";
+import { colour, onThemeChange } from "./theme.js";
+
+const SETTINGS = { responsive: true, displayModeBar: false, scrollZoom: false, doubleClick: "reset" };
+const drawn = new Map();
+let loading = null;
+
+// Draw a plot into `place`. `draw` gives {data, layout} anew for every theme; `table` gives what `table()` takes.
+// Data are zoomed by dragging where there is a mouse; a double click shows all again. Resolves to the plotly element.
+export async function plot(place, { draw, caption, table = null, height = 340, label = caption }) {
+  const chart = h("div", { class: "plot", role: "img", "aria-label": label, style: `height:${height}px` });
+  place.append(h("figure", {}, chart, h("figcaption", {}, caption), table && tableBehind(table)));
+  const Plotly = await loadPlotly();
+  const render = () => {
+    const { data, layout } = draw();
+    return Plotly.react(chart, data, styled(layout, height), SETTINGS);
+  };
+  await render();
+  drawn.set(chart, render);
+  return chart;
+}
+
+// Draw anew what has changed, without a new figure.
+export function redraw(chart) {
+  return drawn.get(chart)?.();
+}
+
+// Zooming one of the charts zooms the others along the named axes, e.g. "xaxis".
+export function linkAxes(charts, names = ["xaxis"]) {
+  let busy = false;
+  for (const chart of charts) {
+    chart.on("plotly_relayout", async (change) => {
+      if (busy) return;
+      const relevant = Object.entries(change).filter(([key]) => names.includes(key.split(".")[0]));
+      if (!relevant.length) return;
+      busy = true;
+      const others = charts.filter((other) => other !== chart);
+      await Promise.all(others.map((other) => globalThis.Plotly.relayout(other, Object.fromEntries(relevant))));
+      busy = false;
+    });
+  }
+}
+
+// An axis: logarithmic or linear, with a title.
+export function axis(title, { log = false, ...more } = {}) {
+  return { title: { text: title }, type: log ? "log" : "linear", ...(log ? { exponentformat: "power", dtick: 1 } : {}), ...more };
+}
+
+// At most `most` points of a long curve that look the same: the smallest and largest of each stretch.
+export function thinned(x, y, most = 4000) {
+  if (x.length <= most) return { x, y };
+  const stretch = Math.ceil((2 * x.length) / most);
+  const kept = [];
+  for (let start = 0; start < x.length; start += stretch) {
+    let [low, high] = [start, start];
+    for (let i = start; i < Math.min(start + stretch, x.length); i += 1) {
+      if (y[i] < y[low]) low = i;
+      if (y[i] > y[high]) high = i;
+    }
+    kept.push(...(low === high ? [low] : [Math.min(low, high), Math.max(low, high)]));
+  }
+  return { x: kept.map((i) => x[i]), y: kept.map((i) => y[i]) };
+}
+
+export function loadPlotly() {
+  loading ??= new Promise((resolve, reject) => {
+    const script = h("script", { src: context.plotly, onload: () => resolve(globalThis.Plotly), onerror: reject });
+    document.head.append(script);
+  });
+  return loading;
+}
+
+function styled(layout, height) {
+  const line = { automargin: true, showline: true, linecolor: colour("--edge"), gridcolor: colour("--line"), zeroline: false, ticks: "outside", tickcolor: colour("--edge") };
+  const result = {
+    height,
+    margin: { l: 12, r: 12, t: 28, b: 12 },
+    paper_bgcolor: "rgba(0,0,0,0)",
+    plot_bgcolor: "rgba(0,0,0,0)",
+    font: { family: "system-ui, sans-serif", size: 13, color: colour("--ink") },
+    hoverlabel: { bgcolor: colour("--panel"), bordercolor: colour("--edge"), font: { color: colour("--ink") } },
+    colorway: [0, 1, 2, 3, 4, 5].map(seriesColour),
+    legend: { orientation: "h", x: 0, y: 1.02, yanchor: "bottom" },
+    hovermode: "closest",
+    dragmode: matchMedia("(pointer: fine)").matches ? "zoom" : false,
+    ...layout,
+  };
+  for (const name of Object.keys(result).filter((key) => /^[xy]axis\d*$/.test(key))) result[name] = { ...line, ...result[name] };
+  return result;
+}
+
+onThemeChange(() => {
+  for (const [chart, render] of drawn) {
+    if (chart.isConnected) render();
+    else drawn.delete(chart);
+  }
+});

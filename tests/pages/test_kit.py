@@ -1,0 +1,140 @@
+"""What all pages share: shells, security headers, theme, jobs, plots and maps."""
+
+import re
+from typing import Any
+
+import httpx
+import pytest
+
+from app.pages.page import pages
+from tests.support.api import Api
+from tests.support.browser import Visit
+from tests.support.paper import FIGURES, prepared
+from tests.support.server import Server
+
+MODULE = "document.querySelector('script[src*=\"/js/shell.js\"]').src.replace('shell.js', {name!r})"
+DRAW_MAP = """async ([address, rows, columns]) => {{
+  const {{ FieldMap }} = await import({address});
+  const frequencies = Array.from({{ length: columns }}, (_, i) => 0.01 * 1.005 ** i);
+  const place = document.createElement("div");
+  document.querySelector("main").append(place);
+  window.chosen = [];
+  const values = (row) => frequencies.map((_, i) => Math.sin(i / 40) * (row + 1));
+  const given = Array.from({{ length: rows }}, (_, row) =>
+    ({{ label: `p = ${{row}}`, frequencies, values: values(row) }}));
+  new FieldMap(place, {{
+    rows: given, minimum: -rows, maximum: rows, caption: "Residuals.", frequencyTitle: "frequency (Hz)",
+    valueTitle: "residual", describe: (row, column) => `row ${{row}}, column ${{column}}`,
+    onChoose: (row, column) => window.chosen.push([row, column]),
+  }});
+}}"""
+
+
+def module(visit: Visit, name: str) -> str:
+    return str(visit.page.evaluate(MODULE.format(name=name)))
+
+
+def draw_map(visit: Visit, rows: int, columns: int) -> None:
+    script = DRAW_MAP.format(address=repr(module(visit, "map.js")))
+    visit.page.evaluate(script, ["", rows, columns])
+    visit.page.wait_for_timeout(100)
+
+
+def test_every_page_is_a_shell_with_a_strict_policy(server: Server) -> None:
+    for page in pages():
+        answer = httpx.get(server.url + re.sub(r"\{\w+\}", "x\"'<b>", page.path))
+        assert answer.status_code == 200, page.path
+        policy = answer.headers["content-security-policy"]
+        assert policy.startswith("default-src 'self'; style-src 'self' 'unsafe-inline';")
+        assert policy.count("unsafe") == 1
+        assert "data:" not in policy
+        assert "<b>" not in answer.text
+        assert re.findall(r"<script(?![^>]*\bsrc=)|\son\w+=|javascript:|https?://", answer.text) == []
+
+
+def test_assets_are_kept_for_ever_and_nothing_else_is_served(server: Server) -> None:
+    shell = httpx.get(f"{server.url}/plants").text
+    addresses = re.findall(r'(?:src|href)="(/static/[^"]+)"', shell)
+    plotly = re.search(r"/static/plotly-[^\"]+\.js", shell)
+    assert plotly is not None
+    for address in [*addresses, plotly[0]]:
+        answer = httpx.get(server.url + address)
+        assert answer.status_code == 200, address
+        assert "immutable" in answer.headers["cache-control"]
+    assert httpx.get(f"{server.url}/static/x/js/api.js").headers["cache-control"] == "no-cache"
+    for bad in ("js/../../main.py", "%2e%2e/main.py", "js", "js/none.js"):
+        assert httpx.get(f"{server.url}/static/x/{bad}").status_code == 404
+
+
+def test_the_theme_follows_the_system_until_it_is_chosen(visit: Visit) -> None:
+    page = visit.open("/plants")
+    background = "getComputedStyle(document.body).backgroundColor"
+    light = page.evaluate(background)
+    page.emulate_media(color_scheme="dark")
+    dark = page.evaluate(background)
+    assert dark != light
+    page.get_by_role("button", name="Light theme").click()
+    assert page.evaluate(background) == light
+    visit.open("/jobs")
+    assert page.evaluate(background) == light
+
+
+def test_the_first_stop_of_the_keyboard_skips_the_menu(visit: Visit) -> None:
+    page = visit.open("/plants")
+    page.keyboard.press("Tab")
+    assert page.evaluate("document.activeElement.textContent") == "Skip to the content"
+    page.keyboard.press("Enter")
+    assert page.evaluate("document.activeElement.id") == "content"
+
+
+def test_a_job_is_seen_live_and_can_be_cancelled(visit: Visit, server: Server) -> None:
+    api = Api(server.url)
+    page = visit.open("/jobs")
+    plant, model = prepared(api)
+    slow = {**FIGURES[7].body(plant, model), "spectrumFamily": {"kind": "fir", "degree": 200}, "tolerance": 1e-8}
+    job = api.post("/designs", slow)
+    card = page.locator(f'[data-job="{job["id"]}"]')
+    card.get_by_role("progressbar").wait_for()
+    assert "Designing experiments" in card.inner_text()
+    card.get_by_role("button", name="Cancel").click()
+    page.get_by_role("cell", name="cancelled").wait_for()
+    assert api.get(f"/jobs/{job['id']}")["state"] == "cancelled"
+
+
+def test_a_map_is_read_by_mouse_and_by_keyboard(visit: Visit) -> None:
+    page = visit.open("/jobs")
+    draw_map(visit, rows=5, columns=200)
+    canvas = page.get_by_role("application")
+    box = canvas.bounding_box()
+    assert box is not None
+    canvas.click(position={"x": box["width"] - 11, "y": 12})
+    assert page.evaluate("window.chosen") == [[4, 199]]
+    for key in ("ArrowDown", "ArrowLeft", "Enter"):
+        page.keyboard.press(key)
+    assert page.evaluate("window.chosen[1]") == [3, 198]
+    assert page.locator(".map-reading").inner_text() == "row 3, column 198"
+
+
+@pytest.mark.parametrize("path", ["/plants", "/jobs"])
+def test_axe_finds_nothing_grave(visit: Visit, path: str) -> None:
+    visit.open(path)
+    draw_map(visit, rows=3, columns=20)
+    for scheme in ("light", "dark"):
+        visit.page.emulate_media(color_scheme=scheme)  # type: ignore[arg-type]
+        assert visit.violations() == []
+
+
+def test_numbers_have_as_many_digits_as_they_are_worth(visit: Visit) -> None:
+    visit.open("/jobs")
+    script = f"async ([name, values]) => (await import({module(visit, 'numbers.js')!r}))[name](...values)"
+
+    def text(name: str, *values: Any) -> Any:
+        return visit.page.evaluate(script, [name, list(values)])
+
+    assert text("significant", 0.00123456) == "0.00123"
+    assert text("significant", -1234567) == "−1.23·10⁶"
+    assert text("significant", 3e-5) == "3.00·10⁻⁵"
+    assert text("quantity", 4.5, "m/s") == "4.50 m/s"
+    assert text("quantity", None, "m/s") == "not known"
+    assert text("estimate", 1.23456, 0.0123) == "1.235 ± 0.012"
+    assert text("percent", 0.01) == "1.00 %"
