@@ -6,6 +6,7 @@ from app.arrays import finite_list_or_none
 from app.conversion.effects import effect_documents
 from app.conversion.models import accuracy_documents, range_documents
 from identification.extension.model import ExtendedModel
+from identification.extension.response import coefficients
 
 
 def joint_names(model: ExtendedModel) -> list[str]:
@@ -19,7 +20,7 @@ def joint_names(model: ExtendedModel) -> list[str]:
 
 def extended_documents(model: ExtendedModel) -> dict[str, Any]:
     """What of the document of a model follows from its parameters and effects."""
-    over_range = range_documents(model.base)
+    over_range = range_documents(model.base, lambda points: coefficients(model, points))
     return {
         "coefficientNames": list(model.base.structure.coefficient_names),
         "parameterNames": list(model.base.parameter_names),

@@ -1,5 +1,6 @@
 """Models: documents to objects, estimates to documents."""
 
+from collections.abc import Callable
 from itertools import product
 from typing import Any
 
@@ -104,7 +105,9 @@ def _relative_error(estimate: LocalEstimate, data: Measurement | None) -> float 
     return finite_or_none(float(np.sqrt(np.mean(abs(1 - response[seen] / data.response[seen]) ** 2))))
 
 
-def range_documents(model: LpvModel) -> dict[str, Any]:
+def range_documents(
+    model: LpvModel, coefficients_at: Callable[[FloatArray], FloatArray] | None = None
+) -> dict[str, Any]:
     """`stable` over the range of the scheduling variables, and `poles` for one variable.
 
     Raises RangeError where coefficients or poles are too large for a number.
@@ -113,7 +116,7 @@ def range_documents(model: LpvModel) -> dict[str, Any]:
     count = POLE_POINTS if len(variables) == 1 else max(2, int(STABILITY_POINTS ** (1 / len(variables))))
     axes = [np.linspace(v.minimum, v.maximum, count) for v in variables]
     points = np.array(list(product(*axes)))
-    coefficients = finite(model.coefficients(points), "coefficients")
+    coefficients = finite((coefficients_at or model.coefficients)(points), "coefficients")
     poles = []
     if len(variables) == 1 and model.structure.n_a > 0:
         pairs = zip(points, finite(model.structure.poles(coefficients), "poles"), strict=True)

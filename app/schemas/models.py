@@ -130,7 +130,8 @@ class Model(CamelModel):
     seed: Integer | None = Field(description="seed of what was drawn at random; null when nothing was")
     state_space: StateSpaceResult | None = Field(default=None, description="of a state-space model; null for others")
     effects: list[PlacedEffectDocument] = Field(
-        default_factory=list, description="physical effects in the model; poles and theta are those of the plant itself"
+        default_factory=list,
+        description="physical effects in the model; theta is that of the plant, poles heed those on coefficients",
     )
     joint_parameter_names: list[str] = Field(
         default_factory=list, description="entries of theta that belong to G, then the parameters of the effects"
@@ -166,3 +167,8 @@ class ModelFrequencyResponse(CamelModel):
     real_variance: Vector | None
     imaginary_variance: Vector | None
     real_imaginary_covariance: Vector | None
+    left_out_effects: list[str] = Field(
+        default_factory=list,
+        description="effects of the model that no frequency response can hold, as they act on signals (the response is"
+        " that of the linear core), or that belong to single measurements",
+    )

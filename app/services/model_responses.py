@@ -7,18 +7,20 @@ from typing import Any
 import numpy as np
 
 from app.arrays import ComplexVector
+from app.conversion.effects import extended_model
 from app.conversion.misuse import pointing
 from app.conversion.models import kept_model
 from app.conversion.state_space import kept_local, kept_state_space
 from app.errors import UnprocessableError
 from app.schemas.models import Model, ModelFrequencyResponse
 from app.schemas.plants import Plant
-from app.services.models import get, require_without_effects
+from app.services.models import get
 from app.services.plants import get as get_plant
 from app.store.resources import ResourceRepository
 from identification.arrays import ComplexArray, FloatArray
 from identification.confidence import GainAndPhase, gain_and_phase
 from identification.errors import RangeError
+from identification.extension.response import LinearResponse, linear_response
 from identification.outcome import Outcome
 from identification.parametric.state_space_likelihood import LikelihoodEstimate
 
@@ -32,6 +34,7 @@ class _Evaluated:
     sample_time: float | None
     response: Callable[[FloatArray], ComplexArray]
     covariance: Callable[[FloatArray], FloatArray] | None
+    left_out: tuple[str, ...] = ()
 
 
 def frequency_response(
@@ -43,11 +46,10 @@ def frequency_response(
 ) -> ModelFrequencyResponse:
     """The response of a model at one operating point over a band (lowest, highest, count), with 95 % bands."""
     document = get(resources, model_id)
-    require_without_effects(document, "/modelId", "path")
     plant = get_plant(resources, document.plant_id)
     _check_channel(document, channel)
     with pointing({}, "/operatingPoint", "query"):
-        model = (_rational if document.state_space is None else _state_space)(document, plant, point, channel)
+        model = _evaluated(document, plant, point, channel)
     omega, count = _frequencies(band, model.sample_time), band[2]
     with pointing({}, "/operatingPoint", "query"):
         response = model.response(omega)
@@ -64,10 +66,38 @@ def frequency_response(
         response=ComplexVector.of(response),
         **_gain_and_phase(gain_and_phase(response, covariance), known),
         **_covariance(covariance, known),
+        left_out_effects=list(model.left_out),
     )
 
 
-def _rational(document: Model, plant: Plant, point: list[float], channel: tuple[int, int]) -> _Evaluated:
+def _evaluated(document: Model, plant: Plant, point: list[float], channel: tuple[int, int]) -> _Evaluated:
+    if document.state_space is not None:
+        return _state_space(document, plant, point, channel)
+    return _extended(document, plant, point) if document.effects else _rational(document, plant, point)
+
+
+def _extended(document: Model, plant: Plant, point: list[float]) -> _Evaluated:
+    model = extended_model(document, plant)
+    known = model.covariance is not None
+
+    def found(omega: FloatArray) -> LinearResponse:
+        return linear_response(model, [point], omega)
+
+    def covariance(omega: FloatArray) -> FloatArray:
+        parts = found(omega).covariance
+        assert parts is not None, "the covariance of the parameters is known"
+        return np.asarray(parts[0])
+
+    left_out = tuple(effect.kind for effect in found(np.ones(1)).left_out)
+    return _Evaluated(
+        model.base.structure.sample_time,
+        lambda omega: found(omega).response[0],
+        covariance if known else None,
+        left_out,
+    )
+
+
+def _rational(document: Model, plant: Plant, point: list[float]) -> _Evaluated:
     model = kept_model(document, plant)
     return _Evaluated(
         model.structure.sample_time,

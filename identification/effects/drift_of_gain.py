@@ -19,6 +19,7 @@ class DriftOfGain(Factor):
     title: ClassVar[str] = "gain drift over the session"
     unit: ClassVar[str] = "1 per hundred records"
     source: ClassVar[str] = "[PintelonSchoukens2012, Section 2.4]"
+    of_measurements: ClassVar[bool] = True
 
     def shape(self, omega: FloatArray) -> ComplexArray:
         """One at all frequencies."""

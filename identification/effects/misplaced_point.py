@@ -22,6 +22,7 @@ class MisplacedPoint(Coefficient):
     title: ClassVar[str] = "one operating point logged wrongly"
     unit: ClassVar[str] = "half the range of the scheduling variable"
     source: ClassVar[str] = "[Ghosh2018, (2)]"
+    of_measurements: ClassVar[bool] = True
     largest: ClassVar[float | None] = 2.0
 
     point: float = 0.0

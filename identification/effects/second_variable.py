@@ -22,6 +22,7 @@ class SecondVariable(Coefficient):
     title: ClassVar[str] = "second scheduling variable"
     unit: ClassVar[str] = "unit of the coefficient per unit of the logged quantity"
     source: ClassVar[str] = "[Ghosh2018, (2)]"
+    of_measurements: ClassVar[bool] = True
 
     logged: tuple[float, ...] = ()
     coefficient: int = 0

@@ -126,9 +126,10 @@ class Effect(ABC):
     """A physical effect with amplitude e; with e = 0 it does nothing. The fields are its further parameters.
 
     `domain`: the kind of plant it belongs to; `unit` of e in words, `sign` +1 where only e ≥ 0 is physical, `largest`
-    the largest physical |e| (None: no bound), `source` where it is described; `oversampling` of the time grid on which
-    a force is computed in continuous time; `shapes` the number of amplitudes; `states` by how many it raises the order
-    of the plant, infinite for distributed effects such as a delay or diffusion.
+    the largest physical |e| (None: no bound), `source` where it is described; `of_measurements`: it lies in how or when
+    was measured, not in the plant; `oversampling` of the time grid on which a force is computed in continuous time;
+    `shapes` the number of amplitudes; `states` by how many it raises the order of the plant, infinite for distributed
+    effects such as a delay or diffusion.
     """
 
     kind: ClassVar[str]
@@ -140,6 +141,7 @@ class Effect(ABC):
     sign: ClassVar[int] = 0
     largest: ClassVar[float | None] = None
     needs_records: ClassVar[bool] = False
+    of_measurements: ClassVar[bool] = False
     shapes: ClassVar[int] = 1
     oversampling: ClassVar[int] = 2
     states: ClassVar[float] = 0

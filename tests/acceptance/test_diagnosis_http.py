@@ -187,6 +187,18 @@ def test_parameters_of_plant_and_effect_come_with_their_joint_covariance(extende
     np.testing.assert_allclose(extended["covariance"], covariance[:-1, :-1])
 
 
+def test_its_frequency_response_is_that_of_the_linear_core(api: Api, extended: Json) -> None:
+    query = {"operatingPoint": 0.5, "minimumRadPerSecond": 1.0, "maximumRadPerSecond": 20.0, "count": 30}
+    found = api.get(f"/models/{extended['id']}/frequency-response", **query)
+    assert found["leftOutEffects"] == ["cubic_stiffness"]
+    response = np.array(found["response"]["re"]) + 1j * np.array(found["response"]["im"])
+    omega = np.array(found["frequenciesRadPerSecond"])
+    exact = 1 / (64.0 + 28.0 * 0.5 - omega**2 + 1.8j * omega)
+    np.testing.assert_allclose(response, exact, rtol=0.02)
+    half_width = (np.array(found["magnitudeUpper95"]) - np.array(found["magnitudeLower95"])) / 2
+    assert np.all(abs(abs(response) - abs(exact)) < 2.5 * half_width)
+
+
 def test_an_extended_model_is_compared_and_diagnosed_like_one_without(
     api: Api, extended: Json, fitted: list[str], held_out: list[str]
 ) -> None:

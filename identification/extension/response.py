@@ -1,0 +1,90 @@
+"""The frequency response of a model with effects, as far as it has one."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from identification.arrays import ComplexArray, FloatArray
+from identification.comparison.batch import EXCITED, Batch
+from identification.extension.model import ExtendedModel, PlacedEffect
+from identification.extension.rows import Rows, effect_tangents, plant_tangents
+from identification.places.linear import Coefficient, Factor, FrequencyAxis, Parallel
+from identification.places.place import Effect
+
+LINEAR = (Coefficient, Factor, FrequencyAxis, Parallel)
+
+
+@dataclass(frozen=True, eq=False)
+class LinearResponse:
+    """G (M, F) with the covariance (M, F, 2, 2) of its real and imaginary part, None where that is not known.
+
+    `left_out`: effects that G does not hold, as they act on signals or belong to the measurements, not to the plant.
+    """
+
+    response: ComplexArray
+    covariance: FloatArray | None
+    left_out: tuple[Effect, ...]
+
+
+def linear_response(model: ExtendedModel, points: ArrayLike, omega: FloatArray) -> LinearResponse:
+    """G(p, ω) at points (M, s) and ω (F,): exact with effects that act linearly, else that of the linear core.
+
+    The covariance is J P Jᵀ, to first order in the joint covariance P of all parameters.
+    """
+    held = [_acts_linearly(one.effect) for one in model.effects]
+    left_out = tuple(one.effect for one, kept in zip(model.effects, held, strict=True) if not kept)
+    kept = _with_only(model, held)
+    batch = _unit_input(model.base.dependence.points(points), omega)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        flow = kept.respond(batch)
+        covariance = None if kept.covariance is None else _covariance(kept, kept.covariance, batch)
+    return LinearResponse(flow.output, covariance, left_out)
+
+
+def coefficients(model: ExtendedModel, points: ArrayLike) -> FloatArray:
+    """ζ(p) at the points (M, s) with what effects change of it, (M, n)."""
+    changing = [isinstance(one.effect, Coefficient) and _acts_linearly(one.effect) for one in model.effects]
+    batch = _unit_input(model.base.dependence.points(points), np.ones(1))
+    return _with_only(model, changing).respond(batch).setting.zeta
+
+
+def _acts_linearly(effect: Effect) -> bool:
+    return isinstance(effect, LINEAR) and not effect.of_measurements
+
+
+def _with_only(model: ExtendedModel, held: list[bool]) -> ExtendedModel:
+    """The model with some of its effects, and their part of the joint covariance."""
+    chosen = [np.ones(model.base.plant_size, dtype=np.bool_)]
+    chosen += [np.full(len(one.parameters()), kept) for one, kept in zip(model.effects, held, strict=True)]
+    part = np.flatnonzero(np.concatenate(chosen))
+    covariance = None if model.covariance is None else model.covariance[np.ix_(part, part)]
+    effects = tuple(one for one, kept in zip(model.effects, held, strict=True) if kept)
+    return replace(model, effects=effects, covariance=covariance)
+
+
+def _unit_input(points: FloatArray, omega: FloatArray) -> Batch:
+    """What would be measured with U = 1, weighted such that whitened rows are real and imaginary parts."""
+    shape = (len(points), len(omega))
+    return Batch(
+        points=points,
+        omega=omega,
+        inputs=np.ones(shape, dtype=np.complex128),
+        outputs=np.zeros(shape, dtype=np.complex128),
+        variances=np.full(shape, 2.0),
+        classes=np.full(shape, EXCITED),
+        members=np.arange(len(points)),
+    )
+
+
+def _covariance(model: ExtendedModel, known: FloatArray, batch: Batch) -> FloatArray:
+    rows, flows = Rows((batch,)), (model.respond(batch),)
+    tangents = [plant_tangents(model, rows, flows)]
+    tangents += [effect_tangents(one, rows, flows) / _scale(one)[:, None] for one in model.effects]
+    parts = np.concatenate(tangents).reshape(-1, len(batch.points), 2, len(batch.omega))
+    return np.asarray(np.einsum("kmif,kl,lmjf->mfij", parts, known, parts, optimize=True))
+
+
+def _scale(one: PlacedEffect) -> FloatArray:
+    """What turns derivatives by the logarithm of further parameters into those by the parameters."""
+    return np.concatenate([np.ones(one.size), one.effect.values()])
