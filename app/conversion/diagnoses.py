@@ -8,13 +8,14 @@ import numpy as np
 from app.arrays import ComplexVector
 from app.conversion.effects import effect_documents, parameters_of
 from app.conversion.models import outcome_document, test_documents
-from app.schemas.diagnoses import EffectVisibility, Evidence, MissingResponse, RankedEffect, Verdict
+from app.schemas.diagnoses import EffectVisibility, Evidence, ExplainedResponse, MissingResponse, RankedEffect, Verdict
 from app.schemas.experiments import Experiment
 from identification.diagnosis import evidence as refits
 from identification.diagnosis.diagnose import Diagnosis, Visibility
-from identification.diagnosis.missing import missing_response
+from identification.diagnosis.missing import explained_response, missing_response
 from identification.diagnosis.scores import Score
 
+LAID_OVER = 3
 VERDICTS: dict[str, Verdict] = {
     "nothing missing": "nothingMissing",
     "explained": "explained",
@@ -92,14 +93,21 @@ def _visibility(found: Diagnosis, one: Visibility) -> EffectVisibility:
 def _missing(found: Diagnosis, experiments: Sequence[Experiment]) -> list[MissingResponse]:
     """One an experiment, where the kernel meets excited lines."""
     rows: dict[int, MissingResponse] = {}
-    for table in missing_response(found.base):
+    best = found.evidence[:LAID_OVER]
+    explained = [explained_response(found.base, one.fit) for one in best]
+    for t, table in enumerate(missing_response(found.base)):
         for m, member in enumerate(table.members):
             seen = np.isfinite(table.response[m]) & np.isfinite(table.deviation[m])
+            parts = zip(best, (tables[t].response[m, seen] for tables in explained), strict=True)
             rows[int(member)] = MissingResponse(
                 experiment_id=experiments[int(member)].id,
                 operating_point=experiments[int(member)].operating_point,
                 frequencies_rad_per_second=table.frequencies[seen].tolist(),
                 response=ComplexVector.of(table.response[m, seen]),
                 standard_deviation=table.deviation[m, seen].tolist(),
+                explained=[
+                    ExplainedResponse(kind=one.fit.model.effects[-1].effect.kind, response=ComplexVector.of(part))
+                    for one, part in parts
+                ],
             )
     return [rows[i] for i in sorted(rows)]

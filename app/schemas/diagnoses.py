@@ -92,6 +92,13 @@ class EffectVisibility(CamelModel):
     reason: str
 
 
+class ExplainedResponse(CamelModel):
+    """What one effect explains of a missing response."""
+
+    kind: str
+    response: ComplexVector = Field(description="at the frequencies of the missing response")
+
+
 class MissingResponse(CamelModel):
     """The smooth picture of what the model lacks: the response at one experiment."""
 
@@ -100,6 +107,9 @@ class MissingResponse(CamelModel):
     frequencies_rad_per_second: Vector
     response: ComplexVector = Field(description="kernel estimate of (Y − Ŷ)/U")
     standard_deviation: Vector = Field(description="of its absolute value where only noise is left")
+    explained: list[ExplainedResponse] = Field(
+        default_factory=list, description="what the first of the refitted effects take up of it, smoothed alike"
+    )
 
 
 class Diagnosis(CamelModel):

@@ -33,10 +33,16 @@ def missing_response(found: Fit, count: int = 60, width: float = WIDTH) -> tuple
     h = `width` times the logarithm of the ratio of the highest to the lowest excited frequency; `count` frequencies.
     """
     pairs = zip(found.rows.batches, found.flows, strict=True)
-    return tuple(_smoothed(batch, flow.output, count, width) for batch, flow in pairs)
+    return tuple(_smoothed(batch, batch.outputs - flow.output, count, width) for batch, flow in pairs)
 
 
-def _smoothed(batch: Batch, output: ComplexArray, count: int, width: float) -> MissingResponse:
+def explained_response(found: Fit, grown: Fit, count: int = 60, width: float = WIDTH) -> tuple[MissingResponse, ...]:
+    """What a fit with an effect more explains of the missing response: the same estimates of (Ŷ_grown − Ŷ)/U."""
+    triples = zip(found.rows.batches, found.flows, grown.flows, strict=True)
+    return tuple(_smoothed(batch, more.output - flow.output, count, width) for batch, flow, more in triples)
+
+
+def _smoothed(batch: Batch, change: ComplexArray, count: int, width: float) -> MissingResponse:
     low, high = batch.band
     grid = np.geomspace(low, high, count)
     lines = np.flatnonzero(batch.omega > 0)
@@ -45,8 +51,7 @@ def _smoothed(batch: Batch, output: ComplexArray, count: int, width: float) -> M
     used = (batch.classes[:, lines] == EXCITED) & np.isfinite(batch.variances[:, lines])
     inputs = batch.inputs[:, lines]
     weight = np.where(used, 1 / batch.variances[:, lines], 0.0)
-    residual = batch.outputs[:, lines] - output[:, lines]
     information = (weight * abs(inputs) ** 2) @ kernel.T
-    response = (weight * inputs.conj() * residual) @ kernel.T / information
+    response = (weight * inputs.conj() * change[:, lines]) @ kernel.T / information
     deviation = np.sqrt((weight * abs(inputs) ** 2) @ (kernel**2).T) / information
     return MissingResponse(batch.points, grid, response, deviation, batch.members)

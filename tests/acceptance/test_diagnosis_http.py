@@ -147,6 +147,13 @@ def test_the_picture_of_what_is_missing_stands_out_of_its_noise(diagnosis: Json,
     row = diagnosis["missing"][0]
     size = np.hypot(row["response"]["re"], row["response"]["im"])
     assert np.max(size / np.array(row["standardDeviation"])) > 5
+    assert [one["kind"] for one in row["explained"]] == [one["kind"] for one in diagnosis["ranking"][:3]]
+    left = [
+        np.hypot(*(np.array(row["response"][part]) - np.array(one["response"][part]) for part in ("re", "im")))
+        for one in row["explained"]
+    ]
+    assert np.median(left[0] / np.array(row["standardDeviation"])) < 2
+    assert np.median(left[0]) < np.median(size) / 4
 
 
 @pytest.fixture(scope="module")
