@@ -1,5 +1,6 @@
 """Measurements on a common frequency grid, ready to be compared with a model line by line."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -22,7 +23,8 @@ class Batch:
     lines that are not compared; `classes` (M, K) of EXCITED, ODD, EVEN; `freedom` (K,) real degrees of freedom of
     each σ̂², `raw_freedom` those that one line brings by itself (infinite where σ is known exactly); windows of
     2 `half_width` + 1 lines were pooled. `signals` (M, L) the input over one period, None for frequency responses.
-    `scaled`: False when only the ratios of the variances are known. `members`: places in the user's list.
+    `scaled`: False when only the ratios of the variances are known. `members`: places in the user's list. `logged`:
+    quantities (M,) that were written down beside the scheduling variables, by their names.
     """
 
     points: FloatArray
@@ -39,6 +41,7 @@ class Batch:
     half_width: int = 0
     scaled: bool = True
     between: tuple[FloatArray, ...] = field(default=())
+    logged: Mapping[str, FloatArray] = field(default_factory=dict)
 
     @cached_property
     def real(self) -> BoolArray:

@@ -1,6 +1,7 @@
 """From records and frequency responses to batches of spectra with the variances of their noise."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -14,20 +15,38 @@ from identification.spectral.local_polynomial import LocalPolynomial
 from identification.spectral.periodic_average import PeriodicAverage, excited_lines
 
 
-def gather(experiments: Sequence[Measurement], mean_value: bool = True) -> tuple[Batch, ...]:
+def gather(
+    experiments: Sequence[Measurement], mean_value: bool = True, logged: Sequence[Mapping[str, float]] = ()
+) -> tuple[Batch, ...]:
     """Batches of the experiments, those on the same grid together, in the order in which the grids first occur.
 
     Periodic records give their mean spectrum at all lines of the period, excited or not, with the variance from how
     the periods differ, pooled over fifteen lines; other records the frequency response that the local
-    polynomial method finds. `mean_value` keeps the line at ω = 0 of periodic records.
+    polynomial method finds. `mean_value` keeps the line at ω = 0 of periodic records. `logged`: for each experiment the
+    quantities written down beside the scheduling variables; those of all experiments are kept.
     """
     if not experiments:
         raise MisuseError("there is nothing to compare with; give at least one experiment", "experiments")
     parts = [_one(m, data, mean_value) for m, data in enumerate(experiments)]
+    if logged:
+        parts = _with_logged(parts, logged)
     groups: dict[object, list[Batch]] = {}
     for part in parts:
         groups.setdefault(_grid(part), []).append(part)
     return tuple(_joined(group) for group in groups.values())
+
+
+def _with_logged(parts: Sequence[Batch], logged: Sequence[Mapping[str, float]]) -> list[Batch]:
+    if len(logged) != len(parts):
+        raise MisuseError(
+            f"there are {len(parts)} experiments and logged quantities of {len(logged)}; give one mapping for each",
+            "logged",
+        )
+    names = sorted(set.intersection(*(set(one) for one in logged)))
+    return [
+        replace(part, logged={name: np.array([one[name]], dtype=np.float64) for name in names})
+        for part, one in zip(parts, logged, strict=True)
+    ]
 
 
 def _grid(part: Batch) -> object:
@@ -51,6 +70,7 @@ def _joined(group: list[Batch]) -> Batch:
         half_width=first.half_width,
         scaled=first.scaled,
         between=between,
+        logged={name: np.concatenate([part.logged[name] for part in group]) for name in first.logged},
         **stacked,
     )
 

@@ -13,6 +13,7 @@ from identification.diagnosis.evidence import Evidence, indistinguishable, refit
 from identification.diagnosis.scores import Score, score_tests
 from identification.diagnosis.signatures import Candidate, candidates
 from identification.effects.library import library
+from identification.effects.second_variable import with_logged
 from identification.errors import MisuseError
 from identification.extension.fit import Fit, fit
 from identification.extension.model import ExtendedModel, require_matching
@@ -99,7 +100,7 @@ def diagnose(
     if rows.count <= len(base.tangents):
         raise MisuseError("there are not more numbers than parameters; measure more lines", "experiments")
     before = misfit("lack of fit", base)
-    judged = candidates(base, library() if effects is None else effects, degree)
+    judged = candidates(base, with_logged(library() if effects is None else effects, batches), degree)
     scores = score_tests(base, [one for one in judged if one.signatures], np.random.default_rng(seed))
     ordered = tuple(sorted(scores, key=lambda one: (one.adjusted_p, one.p_value, -one.statistic)))
     missing = bool(ordered) and ordered[0].adjusted_p < LEVEL

@@ -70,7 +70,7 @@ def _candidate(fit: Fit, effect: Effect, degree: int, space: FloatArray) -> Cand
     pieces = [slice(i * count, (i + 1) * count) for i in range(len(variants))]
     found = [_signature(fit, one, changes[p], projected[p]) for one, p in zip(variants, pieces, strict=True)]
     seen = tuple(one for one in found if one is not None)
-    why = "" if seen else "invisible in this experiment: the fitted parameters take up all that it changes"
+    why = "" if seen else effect.unseen
     return Candidate(effect, seen, effect.looked_at(fit.flows[0]), why)
 
 

@@ -129,7 +129,8 @@ class Effect(ABC):
     the largest physical |e| (None: no bound), `source` where it is described; `of_measurements`: it lies in how or when
     was measured, not in the plant; `oversampling` of the time grid on which a force is computed in continuous time;
     `shapes` the number of amplitudes; `states` by how many it raises the order of the plant, infinite for distributed
-    effects such as a delay or diffusion.
+    effects such as a delay or diffusion; `unseen` says why an experiment does not show it where its signature
+    vanishes.
     """
 
     kind: ClassVar[str]
@@ -145,6 +146,7 @@ class Effect(ABC):
     shapes: ClassVar[int] = 1
     oversampling: ClassVar[int] = 2
     states: ClassVar[float] = 0
+    unseen: ClassVar[str] = "invisible in this experiment: the fitted parameters take up all that it changes"
     parameters: ClassVar[tuple[FurtherParameter, ...]] = ()
 
     @classmethod

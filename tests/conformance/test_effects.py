@@ -8,6 +8,7 @@ import pytest
 
 from identification.effects.delay import Delay
 from identification.effects.library import library
+from identification.effects.rate_dependence import RateDependence
 from identification.effects.rc_arc import RcArc
 from identification.effects.resonance import Resonance
 from identification.effects.second_variable import SecondVariable
@@ -19,7 +20,9 @@ from tests.support.oscillators import MODEL, batches
 BATCHES = batches(11)
 ROWS = Rows(BATCHES)
 FLOW = MODEL.respond(BATCHES[0])
-EFFECTS = [SecondVariable((1.0, -1.0, 2.0, 0.5, 3.0), 1) if e.kind == "second_variable" else e for e in library()]
+LOGGED = (1.0, -1.0, 2.0, 0.5, 3.0)
+OF_MEASUREMENTS = {"second_variable": SecondVariable(LOGGED, 1), "rate_dependence": RateDependence(LOGGED, 1)}
+EFFECTS = [OF_MEASUREMENTS.get(effect.kind, effect) for effect in library()]
 each = pytest.mark.parametrize("effect", EFFECTS, ids=lambda effect: effect.kind)
 
 
