@@ -44,7 +44,7 @@ def compared_experiments(data: Data, found: Comparison, experiments: Sequence[Ex
     return [
         ComparedExperiment(
             experiment_id=experiment.id,
-            operating_point=experiment.operating_point,
+            operating_point=experiment.held_at,
             data=data,
             fit_percent=finite_or_none(float(percent)),
         )

@@ -101,7 +101,7 @@ def _missing(found: Diagnosis, experiments: Sequence[Experiment]) -> list[Missin
             parts = zip(best, (tables[t].response[m, seen] for tables in explained), strict=True)
             rows[int(member)] = MissingResponse(
                 experiment_id=experiments[int(member)].id,
-                operating_point=experiments[int(member)].operating_point,
+                operating_point=experiments[int(member)].held_at,
                 frequencies_rad_per_second=table.frequencies[seen].tolist(),
                 response=ComplexVector.of(table.response[m, seen]),
                 standard_deviation=table.deviation[m, seen].tolist(),

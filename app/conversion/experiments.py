@@ -69,7 +69,7 @@ def require_channels(data: Measurement, channels: tuple[int, int]) -> None:
 
 def kept_measurement(experiment: Experiment, arrays: Mapping[str, NDArray[Any]]) -> Measurement:
     """The measurement of an experiment that was kept."""
-    point = tuple(experiment.operating_point)
+    point = tuple(experiment.held_at)
     if experiment.kind == "timeRecord":
         assert experiment.sample_time_seconds is not None, "time records have a sample time"
         period = experiment.understood.period_samples

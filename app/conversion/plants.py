@@ -146,6 +146,11 @@ def state_space_dependence(
     return dependence
 
 
+def scheduling_variables(plant: PlantRequest) -> tuple[SchedulingVariable, ...]:
+    """The scheduling variables with their ranges."""
+    return tuple(SchedulingVariable(v.name, v.unit, v.minimum, v.maximum) for v in plant.scheduling_variables)
+
+
 def channels(plant: PlantRequest) -> tuple[int, int]:
     """Number of outputs and of inputs."""
     return len(plant.outputs or (plant.output,)), len(plant.inputs or (plant.input,))

@@ -6,14 +6,14 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from app.files.table import FileError, Table, named
+from app.files.table import FileError, Table, Understand, named
 from identification.arrays import FloatArray
 
 MAX_COLUMNS = 100
 
 
-def read(content: bytes) -> Table:
-    """The columns of a file; raises FileError when it is no table of numbers."""
+def read(content: bytes, understand: Understand = named) -> Table:
+    """The columns of a file, as `understand` takes them; raises FileError when it is no table of numbers."""
     try:
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError:
@@ -28,7 +28,7 @@ def read(content: bytes) -> Table:
     values = _values(body, separator, len(names))
     if len(set(names)) < len(names):
         raise FileError("two columns of the file have the same name")
-    return named(dict(zip(names, values.T, strict=True)))
+    return understand(dict(zip(names, values.T, strict=True)))
 
 
 def _values(body: str, separator: str, columns: int) -> FloatArray:

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from app.files.table import MAX_EXPANDED_BYTES, MAX_MEMBERS, FileError, Table, may_be_read, named
+from app.files.table import MAX_EXPANDED_BYTES, MAX_MEMBERS, FileError, Table, Understand, may_be_read, named
 
 HEADER_BYTES = 128
 MAX_DEPTH = 8
@@ -25,8 +25,10 @@ NUMBER_TYPES = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 9
 COMPLEX_FLAG = 0x800
 
 
-def read(content: bytes, group: str = "") -> Table:
+def read(content: bytes, group: str = "", understand: Understand | None = None) -> Table:
     """The arrays of a file, those inside the structure `group` (such as data.measured) when it is given.
+
+    With `understand` None, arrays that cannot be a measurement at one operating point are passed over.
 
     Raises FileError when the file is damaged, of another level, or holds too much.
     """
@@ -39,6 +41,8 @@ def read(content: bytes, group: str = "") -> Table:
         )
     if len(arrays) > MAX_MEMBERS:
         raise FileError(f"the mat file has {len(arrays)} arrays, at most {MAX_MEMBERS} are read")
+    if understand is not None:
+        return understand(arrays)
     return named({name: array for name, array in arrays.items() if may_be_read(name, array)})
 
 

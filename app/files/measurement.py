@@ -55,17 +55,22 @@ def measurement(table: Table, stated: Statements) -> Measurement:
 
 
 def _time_record(table: Table, stated: Statements) -> TimeRecord:
-    period = stated.period if stated.period is not None else _whole_number(table, "period")
     return TimeRecord(
         input=_real(table, "input"),
         output=_real(table, "output"),
-        sample_time=_sample_time(table, stated),
+        sample_time=record_sample_time(table, stated),
         operating_point=stated.operating_point,
-        period=period,
+        period=record_period(table, stated),
     )
 
 
-def _sample_time(table: Table, stated: Statements) -> float:
+def record_period(table: Table, stated: Statements) -> int | None:
+    """The period in samples, as stated or as the file says."""
+    return stated.period if stated.period is not None else _whole_number(table, "period")
+
+
+def record_sample_time(table: Table, stated: Statements) -> float:
+    """The sample time in seconds; raises FileError when there is none, or when file and statement differ."""
     found = _scalar(table, "sample_time")
     if "time" in table:
         found = _uniform_step(_real(table, "time"))

@@ -9,18 +9,21 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from app.files.table import MAX_EXPANDED_BYTES, MAX_MEMBERS, FileError, Table, named
+from app.files.table import MAX_EXPANDED_BYTES, MAX_MEMBERS, FileError, Table, Understand, named
 
 MAX_HEADER_BYTES = 10_000
 
 
-def read(content: bytes) -> Table:
-    """The arrays of a file; raises FileError when it is damaged, too large when expanded, or holds objects."""
+def read(content: bytes, understand: Understand = named) -> Table:
+    """The arrays of a file, as `understand` takes them.
+
+    Raises FileError when it is damaged, too large when expanded, or holds objects.
+    """
     try:
         with zipfile.ZipFile(io.BytesIO(content)) as archive:
             members = archive.infolist()
             _check(members)
-            return named({info.filename.removesuffix(".npy"): _array(archive, info) for info in members})
+            return understand({info.filename.removesuffix(".npy"): _array(archive, info) for info in members})
     except (zipfile.BadZipFile, zlib.error, EOFError, OSError, NotImplementedError, RuntimeError) as error:
         raise FileError(f"the file is not a whole npz file: {str(error)[:200]}") from None
     except FileError:

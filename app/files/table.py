@@ -1,7 +1,7 @@
 """What a file is read into: named arrays under one set of names."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -33,6 +33,7 @@ MATRICES = ("response", "real", "imaginary", "variance")
 _MEANING = {name: meaning for meaning, names in NAMES.items() for name in names}
 
 Table = dict[str, NDArray[Any]]
+Understand = Callable[[Mapping[str, NDArray[Any]]], Table]
 
 
 class FileError(MisuseError):
@@ -44,11 +45,12 @@ class FileError(MisuseError):
 
 def may_be_read(name: str, array: NDArray[Any]) -> bool:
     """Whether an array is a vector, or the matrices or table of something that may have several channels."""
-    several = _MEANING.get(_plain(name)) in MATRICES and array.ndim <= 3
+    several = _MEANING.get(plain(name)) in MATRICES and array.ndim <= 3
     return several or array.size == max(array.shape)
 
 
-def _plain(name: str) -> str:
+def plain(name: str) -> str:
+    """A name without case, spaces, dashes and underscores."""
     return re.sub(r"[\s_\-()/]", "", name).lower()
 
 
@@ -57,9 +59,9 @@ def named(members: Mapping[str, NDArray[Any]]) -> Table:
     table: Table = {}
     entries: dict[str, channel_columns.Entries] = {}
     for name, array in members.items():
-        plain = _plain(name)
-        entry = channel_columns.entry_of(plain)
-        meaning = entry[0] if entry else _MEANING.get(plain)
+        short = plain(name)
+        entry = channel_columns.entry_of(short)
+        meaning = entry[0] if entry else _MEANING.get(short)
         if meaning is None:
             continue
         if meaning in table or (entry and entry[1] in entries.get(meaning, {})):
@@ -89,9 +91,15 @@ def _add(table: Table, entries: Mapping[str, channel_columns.Entries]) -> None:
             raise FileError(f"the columns of the {meaning}: {error}") from None
 
 
-def _numbers(name: str, array: NDArray[Any], meaning: str) -> NDArray[Any]:
+def numbers(name: str, array: NDArray[Any]) -> NDArray[Any]:
+    """The array itself; raises FileError when it holds anything but numbers."""
     if array.dtype.kind not in "iufcb":
         raise FileError(f"{name[:40]!r} holds no numbers")
+    return array
+
+
+def _numbers(name: str, array: NDArray[Any], meaning: str) -> NDArray[Any]:
+    array = numbers(name, array)
     most = 3 if meaning in MATRICES else 1
     plain = array if array.ndim == most > 1 else np.squeeze(array)
     if plain.ndim > most:

@@ -3,8 +3,6 @@
 from pathlib import Path
 from typing import Any
 
-from app.conversion.misuse import pointing
-from app.conversion.plants import plant_dependence
 from app.errors import UnprocessableError
 from app.offline.documents import checked
 from app.offline.workplace import PLANT_ID, Workplace, stored
@@ -30,14 +28,12 @@ def _experiment(
         if not path.is_file():
             raise UnprocessableError.at(f"{pointer}/file", f"there is no file {path}")
         request = checked(FileFields, stated, pointer)
-        point, name = request.operating_point, path.name
-        payload, arrays = experiments.file_payload(plant, request, path.read_bytes(), name)
+        payload, arrays = experiments.file_payload(plant, request, path.read_bytes(), path.name)
+        experiments.check_point(plant, request, f"{pointer}/operatingPoint")
     else:
         body = checked(ExperimentRequest, stated, pointer)
-        point = body.root.operating_point
         payload, arrays = experiments.json_payload(plant, body)
-    with pointing({}, f"{pointer}/operatingPoint"):
-        plant_dependence(plant).points([point])
+        experiments.check_point(plant, body.root, f"{pointer}/operatingPoint")
     found = place.run("experiment", {**payload, "arrays": place.arrays.put(arrays)})
     document = stored(found.document, f"experiment{index + 1}", jobId=None)
     return Experiment.model_validate(document), found.arrays or ""

@@ -27,7 +27,7 @@ Upload = Annotated[
 def create_experiment(
     body: ExperimentRequest, container: ContainerDependency, response: Response, key: IdempotencyKey = None
 ) -> Job:
-    """Bring in a time record or a frequency response as JSON."""
+    """Bring in a time record, a frequency response or a record along varying scheduling as JSON."""
     return accepted(experiments.submit(container, body, key), response)
 
 
@@ -38,8 +38,16 @@ def upload_experiment(
     file: Upload,
     plant_id: Annotated[str, Form(alias="plantId", description="the plant that was measured")],
     operating_point: Annotated[
-        list[Finite], Form(alias="operatingPoint", description="one value a scheduling variable")
-    ],
+        list[Finite] | None,
+        Form(
+            alias="operatingPoint",
+            description="one value a scheduling variable; left out when the file holds the scheduling signals",
+        ),
+    ] = None,
+    scheduling_columns: Annotated[
+        list[str] | None,
+        Form(alias="schedulingColumns", description="columns of the scheduling signals, where they have other names"),
+    ] = None,
     name: Annotated[str, Form()] = "",
     description: Annotated[str, Form()] = "",
     design_id: Annotated[str | None, Form(alias="designId", description="the design that is carried out")] = None,
@@ -57,11 +65,14 @@ def upload_experiment(
 
     A time record has input, output and time (or state sampleTimeSeconds). A frequency response has
     frequenciesRadPerSecond (or frequencyHz), response (or responseRe and responseIm) and, where known, variance.
+    A record along varying scheduling states no operatingPoint; it has u, y and p (or u1, u2, … and the names of the
+    scheduling variables) and time.
     """
     stated = _checked(
         {
             "plantId": plant_id,
             "operatingPoint": operating_point,
+            "schedulingColumns": scheduling_columns,
             "name": name,
             "description": description,
             "designId": design_id,

@@ -9,7 +9,8 @@ from app.schemas.extensions import ExtensionRequest
 from app.schemas.jobs import Job
 from app.schemas.models import Model, ModelFrequencyResponse, ModelList, ModelRequest, StatedModelRequest
 from app.schemas.state_space import StateSpaceModelRequest
-from app.services import extensions, model_responses, models, state_space_models
+from app.schemas.varying import VaryingModelRequest
+from app.services import extensions, model_responses, models, state_space_models, varying_models
 from app.services.jobs import accepted
 
 router = APIRouter(prefix="/models", tags=["models"])
@@ -31,6 +32,14 @@ def create_state_space_model(
 ) -> Job:
     """Identify a state-space model from frequency responses, also with several inputs and outputs."""
     return accepted(state_space_models.submit(container, body, key), response)
+
+
+@router.post("/varying", status_code=202)
+def create_varying_model(
+    body: VaryingModelRequest, container: ContainerDependency, response: Response, key: IdempotencyKey = None
+) -> Job:
+    """Identify an affine state-space model from one experiment in which the scheduling varies."""
+    return accepted(varying_models.submit(container, body, key), response)
 
 
 @router.post("/stated", status_code=201)

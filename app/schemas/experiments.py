@@ -1,4 +1,4 @@
-"""Experiments: what was measured at one operating point, and what was understood of it."""
+"""Experiments: what was measured at one operating point or along varying scheduling, and what was understood of it."""
 
 from typing import Annotated, Literal
 
@@ -6,11 +6,11 @@ from pydantic import Field, RootModel, field_validator
 
 from app.arrays import ComplexMatrices, ComplexVector, Matrices, matrices_shape
 from app.schemas.common import CamelModel, Double, Integer, Timestamp
-from app.schemas.plants import LongText, OperatingPoint, Positive, SampleTime, Text
+from app.schemas.plants import LongText, Name, OperatingPoint, Positive, SampleTime, Text
 
 Identifier = Annotated[str, Field(min_length=1, max_length=64)]
 Values = list[Double]
-ExperimentKind = Literal["timeRecord", "frequencyResponse", "matrixFrequencyResponse"]
+ExperimentKind = Literal["timeRecord", "frequencyResponse", "matrixFrequencyResponse", "varyingRecord"]
 
 
 class ExperimentFields(CamelModel):
@@ -19,11 +19,16 @@ class ExperimentFields(CamelModel):
     plant_id: Identifier = Field(description="the plant that was measured")
     name: Text = ""
     description: LongText = ""
-    operating_point: OperatingPoint = Field(description="one value a scheduling variable, constant while measuring")
     design_id: Identifier | None = Field(default=None, description="the design that this experiment carries out")
 
 
-class TimeRecordRequest(ExperimentFields):
+class LocalExperimentFields(ExperimentFields):
+    """What every experiment at one operating point states."""
+
+    operating_point: OperatingPoint = Field(description="one value a scheduling variable, constant while measuring")
+
+
+class TimeRecordRequest(LocalExperimentFields):
     """Input and output over time."""
 
     kind: Literal["timeRecord"]
@@ -35,7 +40,7 @@ class TimeRecordRequest(ExperimentFields):
     )
 
 
-class FrequencyResponseRequest(ExperimentFields):
+class FrequencyResponseRequest(LocalExperimentFields):
     """A measured frequency response."""
 
     kind: Literal["frequencyResponse"]
@@ -50,7 +55,7 @@ class FrequencyResponseRequest(ExperimentFields):
     )
 
 
-class MatrixFrequencyResponseRequest(ExperimentFields):
+class MatrixFrequencyResponseRequest(LocalExperimentFields):
     """A measured frequency response with several inputs or outputs."""
 
     kind: Literal["matrixFrequencyResponse"]
@@ -72,24 +77,80 @@ class MatrixFrequencyResponseRequest(ExperimentFields):
         return variance
 
 
+Channels = Annotated[list[Values], Field(min_length=1, max_length=50)]
+
+
+class VaryingRecordRequest(ExperimentFields):
+    """Inputs, outputs and measured scheduling signals over time."""
+
+    kind: Literal["varyingRecord"]
+    sample_time_seconds: SampleTime
+    inputs: Channels = Field(description="one list of samples for each input of the plant, in its order and units")
+    outputs: Channels = Field(description="one list of samples for each output of the plant")
+    scheduling: Channels = Field(description="one list of samples for each scheduling variable, in its range")
+    period_samples: Annotated[Integer, Field(ge=2)] | None = Field(
+        default=None,
+        description="samples after which input and scheduling both repeat themselves; null when it is to be found, or"
+        " when there is none",
+    )
+
+
 class ExperimentRequest(
     RootModel[
         Annotated[
-            TimeRecordRequest | FrequencyResponseRequest | MatrixFrequencyResponseRequest, Field(discriminator="kind")
+            TimeRecordRequest | FrequencyResponseRequest | MatrixFrequencyResponseRequest | VaryingRecordRequest,
+            Field(discriminator="kind"),
         ]
     ]
 ):
-    """A time record or a frequency response, told apart by `kind`."""
+    """A time record, a frequency response or a record along varying scheduling, told apart by `kind`."""
 
 
 class FileFields(ExperimentFields):
     """What is stated beside an uploaded file; it goes before what the file says."""
 
+    operating_point: OperatingPoint | None = Field(
+        default=None,
+        description="one value a scheduling variable, constant while measuring; left out when the file holds the"
+        " scheduling signals",
+    )
+    scheduling_columns: Annotated[list[Name], Field(max_length=10)] | None = Field(
+        default=None,
+        description="columns or arrays of the file that hold the scheduling signals, one a variable; left out: those"
+        " named as the scheduling variables, or p, p1, p2, …",
+    )
     sample_time_seconds: SampleTime | None = Field(default=None, description="needed when the file has no time")
     period_samples: Annotated[Integer, Field(ge=2)] | None = Field(default=None, description="samples in one period")
     variable_group: Text = Field(
         default="", description="structure of a mat file that holds the arrays, e.g. data.run1"
     )
+
+
+class SchedulingRange(CamelModel):
+    """Where a scheduling signal ran."""
+
+    name: str
+    unit: str
+    minimum: Double
+    maximum: Double
+
+
+class VaryingUnderstanding(CamelModel):
+    """What was understood of a record along varying scheduling; null where it cannot be known."""
+
+    ranges: list[SchedulingRange] = Field(description="of p(t), one a scheduling variable")
+    synchronised: bool = Field(description="whether input and scheduling repeat themselves together")
+    reason: str = Field(description="why they do not, and how far off they are; empty when they do")
+    input_period_samples: Integer | None = Field(description="of the input by itself; 1 when it is constant")
+    scheduling_period_samples: Integer | None = Field(description="of the scheduling by itself; 1 when it is constant")
+    input_deviation: Double | None = Field(
+        description="largest difference between samples one period apart, over the root mean square of what varies"
+    )
+    scheduling_deviation: Double | None = Field(description="likewise of the scheduling")
+    steady_periods: Integer | None = Field(description="periods without transient")
+    transient_rule: str | None = Field(description="by which leading periods were taken as transient")
+    left_over_samples: Integer | None = Field(description="samples after the last whole period")
+    noise_levels: Values | None = Field(description="standard deviation of the noise of each output")
 
 
 class Understanding(CamelModel):
@@ -116,6 +177,9 @@ class Understanding(CamelModel):
     output_offset: Double | None = Field(default=None, description="mean of the output")
     output_trend: Double | None = Field(default=None, description="change of a significant straight line")
     outliers: Integer | None = Field(default=None, description="output samples far outside the noise")
+    varying: VaryingUnderstanding | None = Field(
+        default=None, description="of a record along varying scheduling; null for others"
+    )
     warnings: list[str] = Field(description="what may spoil an identification")
 
 
@@ -127,12 +191,21 @@ class Experiment(ExperimentFields):
     job_id: str | None
     software_version: str
     kind: ExperimentKind
+    operating_point: OperatingPoint | None = Field(
+        description="one value a scheduling variable, constant while measuring; null where the scheduling varied"
+    )
     sample_time_seconds: Double | None = Field(description="null for a frequency response in continuous time")
     variance_known: bool = Field(description="whether variances came with the frequency response")
     variance_degrees_of_freedom: Double | None = Field(description="of these variances; null when known exactly")
     source: Literal["json", "csv", "npz", "mat"] = Field(description="how the data came")
     file_name: str | None = Field(default=None, description="name of the uploaded file")
     understood: Understanding
+
+    @property
+    def held_at(self) -> list[float]:
+        """The operating point of an experiment in which it was held still."""
+        assert self.operating_point is not None, "the scheduling varied"
+        return self.operating_point
 
 
 class ExperimentList(CamelModel):
@@ -149,6 +222,16 @@ class TimeRecordData(CamelModel):
     sample_time_seconds: Double
     input: Values
     output: Values
+
+
+class VaryingRecordData(CamelModel):
+    """The samples of a record along varying scheduling, one list a channel."""
+
+    kind: Literal["varyingRecord"]
+    sample_time_seconds: Double
+    inputs: list[Values]
+    outputs: list[Values]
+    scheduling: list[Values]
 
 
 class FrequencyResponseData(CamelModel):
@@ -171,7 +254,10 @@ class MatrixFrequencyResponseData(CamelModel):
 
 class ExperimentData(
     RootModel[
-        Annotated[TimeRecordData | FrequencyResponseData | MatrixFrequencyResponseData, Field(discriminator="kind")]
+        Annotated[
+            TimeRecordData | FrequencyResponseData | MatrixFrequencyResponseData | VaryingRecordData,
+            Field(discriminator="kind"),
+        ]
     ]
 ):
     """The arrays of an experiment."""

@@ -12,6 +12,7 @@ import identification.parametric
 import identification.pole_regions
 import identification.spectral
 import identification.subspace
+import identification.varying
 import oed.spectra
 import oed.targets
 from app.schemas.plug_ins import PlugInDocument, PlugInFamily
@@ -27,6 +28,12 @@ def _is_simple(region: type[Any]) -> bool:
 def _refines(estimator: type[Any]) -> bool:
     """Whether an estimator begins with a model that another one has found."""
     return "start" in inspect.signature(estimator.estimate).parameters
+
+
+def _begins_alone(estimator: type[Any]) -> bool:
+    """Whether an estimator needs no model to begin with, though it may take one."""
+    start = inspect.signature(estimator.estimate).parameters.get("start")
+    return start is None or start.default is not inspect.Parameter.empty
 
 
 def _begins(estimator: type[Any]) -> bool:
@@ -53,6 +60,10 @@ PARAMETRIC_ESTIMATORS = PlugInFamily(
     "ParametricEstimator", "Estimator", identification.parametric, nested=REGIONS, elsewhere=ORDER, only=_begins
 )
 REFINEMENTS = PlugInFamily("Refinement", "Refinement", identification.parametric, nested=REGIONS, only=_refines)
+VARYING_ESTIMATORS = PlugInFamily("VaryingEstimator", "Estimator", identification.varying, only=_begins_alone)
+VARYING_REFINEMENTS = PlugInFamily(
+    "VaryingRefinement", "Refinement", identification.varying, parts=VARYING_ESTIMATORS, only=_refines
+)
 TARGETS = PlugInFamily("AccuracyTarget", "Target", oed.targets)
 SPECTRUM_FAMILIES = PlugInFamily("SpectrumFamily", "Family", oed.spectra)
 
@@ -64,6 +75,8 @@ FAMILIES = {
     "subspaceEstimators": SUBSPACE_ESTIMATORS,
     "parametricEstimators": PARAMETRIC_ESTIMATORS,
     "refinements": REFINEMENTS,
+    "varyingEstimators": VARYING_ESTIMATORS,
+    "varyingRefinements": VARYING_REFINEMENTS,
     "poleRegions": POLE_REGIONS,
     "targets": TARGETS,
     "spectrumFamilies": SPECTRUM_FAMILIES,
@@ -77,6 +90,8 @@ if TYPE_CHECKING:
     SubspaceEstimator = PlugInDocument
     ParametricEstimator = PlugInDocument
     Refinement = PlugInDocument
+    VaryingEstimator = PlugInDocument
+    VaryingRefinement = PlugInDocument
     AccuracyTarget = PlugInDocument
     SpectrumFamily = PlugInDocument
 else:
@@ -87,5 +102,7 @@ else:
     SubspaceEstimator = SUBSPACE_ESTIMATORS.union
     ParametricEstimator = PARAMETRIC_ESTIMATORS.union
     Refinement = REFINEMENTS.union
+    VaryingEstimator = VARYING_ESTIMATORS.union
+    VaryingRefinement = VARYING_REFINEMENTS.union
     AccuracyTarget = TARGETS.union
     SpectrumFamily = SPECTRUM_FAMILIES.union

@@ -20,6 +20,7 @@ from app.schemas.plants import (
     Text,
 )
 from app.schemas.state_space import StateSpaceResult
+from app.schemas.varying import VaryingResult
 
 
 class ModelRequest(CamelModel):
@@ -129,6 +130,9 @@ class Model(CamelModel):
     parent_id: str | None = Field(description="the model that this one is a new version of")
     seed: Integer | None = Field(description="seed of what was drawn at random; null when nothing was")
     state_space: StateSpaceResult | None = Field(default=None, description="of a state-space model; null for others")
+    varying: VaryingResult | None = Field(
+        default=None, description="of a model from a record along varying scheduling; null for others"
+    )
     effects: list[PlacedEffectDocument] = Field(
         default_factory=list,
         description="physical effects in the model; theta is that of the plant, poles heed those on coefficients",

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from app.arrays import ComplexMatrices, ComplexVector
 from app.container import Container
 from app.conversion.experiments import kept_measurement
+from app.conversion.varying_records import record_columns, record_data
 from app.files.stored import Format, arrays_file
 from app.schemas.experiments import (
     Experiment,
@@ -17,20 +18,21 @@ from app.schemas.experiments import (
     TimeRecordData,
 )
 from app.services.experiments import KIND, experiment_of
-from identification.signals import Measurement, TimeRecord
+from identification.signals import TimeRecord
 
 
-def measurement_of(container: Container, experiment_id: str) -> tuple[Experiment, Measurement]:
-    """An experiment and its measurement."""
+def _kept(container: Container, experiment_id: str) -> tuple[Experiment, dict[str, NDArray[Any]]]:
     resource = container.resources.get(KIND, experiment_id)
     assert resource.arrays is not None, "experiments have arrays"
-    experiment = experiment_of(resource)
-    return experiment, kept_measurement(experiment, container.arrays.get(resource.arrays))
+    return experiment_of(resource), container.arrays.get(resource.arrays)
 
 
 def as_document(container: Container, experiment_id: str) -> ExperimentData:
     """The arrays as lists."""
-    _, data = measurement_of(container, experiment_id)
+    experiment, kept = _kept(container, experiment_id)
+    if experiment.kind == "varyingRecord":
+        return ExperimentData(record_data(experiment, kept))
+    data = kept_measurement(experiment, kept)
     if isinstance(data, TimeRecord):
         return ExperimentData(
             TimeRecordData(
@@ -62,7 +64,10 @@ def as_document(container: Container, experiment_id: str) -> ExperimentData:
 
 def as_file(container: Container, experiment_id: str, file_format: Format) -> bytes:
     """The arrays as a file that can be brought in again."""
-    _, data = measurement_of(container, experiment_id)
+    experiment, kept = _kept(container, experiment_id)
+    if experiment.kind == "varyingRecord":
+        return arrays_file(record_columns(experiment, kept), file_format)
+    data = kept_measurement(experiment, kept)
     arrays: dict[str, NDArray[Any]]
     if isinstance(data, TimeRecord):
         time = np.arange(len(data)) * data.sample_time

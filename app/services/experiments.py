@@ -1,5 +1,6 @@
 """Experiments: data that came in is kept as it came, and a job makes out what it is."""
 
+from collections.abc import Sequence
 from typing import Any, Literal
 
 import numpy as np
@@ -9,19 +10,34 @@ from app.container import Container
 from app.conversion.experiments import requested_measurement, require_channels
 from app.conversion.misuse import pointing
 from app.conversion.plants import channels, plant_dependence
+from app.conversion.varying_records import record_arrays, requested_record
 from app.errors import UnprocessableError
 from app.files.measurement import measurement_arrays
 from app.jobs.records import JobRecord
-from app.schemas.experiments import Experiment, ExperimentList, ExperimentRequest, FileFields
+from app.schemas.experiments import Experiment, ExperimentList, ExperimentRequest, FileFields, VaryingRecordRequest
 from app.schemas.plants import Plant
-from app.services.documents import fields, items, named, of_plant
+from app.services.documents import fields, items, named, named_of_plant, of_plant
 from app.services.jobs import fingerprint
 from app.services.plants import plant_of
 from app.store.resources import Resource, ResourceRepository
 
 KIND = "experiments"
+VARYING_POINTERS = {
+    "input": "/inputs",
+    "output": "/outputs",
+    "scheduling": "/scheduling",
+    "sample_time": "/sampleTimeSeconds",
+    "period": "/periodSamples",
+}
+VARIED = (
+    "the scheduling varied in this experiment; what it says is found with POST /v1/models/varying, here experiments"
+    " at operating points that were held still are needed"
+)
 Arrays = dict[str, NDArray[Any]]
-ARRAYS_OF_BODY = {"input", "output", "frequencies_rad_per_second", "response", "variance"}
+ARRAYS_OF_BODY = {
+    *("input", "output", "frequencies_rad_per_second", "response", "variance"),
+    *("inputs", "outputs", "scheduling"),
+}
 POINTERS = {
     "input": "/input",
     "output": "/output",
@@ -35,7 +51,7 @@ POINTERS = {
 
 def submit(container: Container, request: ExperimentRequest, key: str | None) -> JobRecord:
     """Start the job that looks at measured arrays."""
-    plant = _plant_with_point(container.resources, request.root)
+    plant = _plant_of(container.resources, request.root)
     payload, arrays = json_payload(plant, request)
     payload["arrays"] = container.arrays.put(arrays)
     return _submit(container, plant, payload, key)
@@ -43,7 +59,7 @@ def submit(container: Container, request: ExperimentRequest, key: str | None) ->
 
 def submit_file(container: Container, request: FileFields, content: bytes, name: str, key: str | None) -> JobRecord:
     """Start the job that reads a file of measurements."""
-    plant = _plant_with_point(container.resources, request)
+    plant = _plant_of(container.resources, request)
     payload, arrays = file_payload(plant, request, content, name)
     payload["arrays"] = container.arrays.put(arrays)
     return _submit(container, plant, payload, key)
@@ -51,10 +67,15 @@ def submit_file(container: Container, request: FileFields, content: bytes, name:
 
 def json_payload(plant: Plant, request: ExperimentRequest) -> tuple[dict[str, Any], Arrays]:
     """What the task gets beside the hash of the arrays, and the arrays."""
+    body = request.root
+    stated = body.model_dump(by_alias=True, mode="json", exclude=ARRAYS_OF_BODY)
+    if isinstance(body, VaryingRecordRequest):
+        with pointing(VARYING_POINTERS, default=""):
+            record = requested_record(plant, body)
+        return {**_task("json", None, stated, plant), "plant": plant.as_json()}, record_arrays(record)
     with pointing(POINTERS, default=""):
-        data = requested_measurement(request.root)
+        data = requested_measurement(body)
         require_channels(data, channels(plant))
-    stated = request.root.model_dump(by_alias=True, mode="json", exclude=ARRAYS_OF_BODY)
     return _task("json", None, stated, plant), measurement_arrays(data)
 
 
@@ -62,8 +83,21 @@ def file_payload(plant: Plant, request: FileFields, content: bytes, name: str) -
     """What the task gets beside the hash of the file, and the file as an array of bytes."""
     if not content:
         raise UnprocessableError.at("/file", "the file is empty")
-    stated = request.as_json()
-    return _task(file_format(name), name[:200], stated, plant), {"file": np.frombuffer(content, dtype=np.uint8)}
+    task = _task(file_format(name), name[:200], request.as_json(), plant)
+    if request.operating_point is None:
+        task["plant"] = plant.as_json()
+        columns = request.scheduling_columns
+        if columns is not None and len(columns) != len(plant.scheduling_variables):
+            raise UnprocessableError.at(
+                "/schedulingColumns",
+                f"{len(columns)} columns are named, the plant has {len(plant.scheduling_variables)} variables",
+            )
+    elif request.scheduling_columns is not None:
+        raise UnprocessableError.at(
+            "/schedulingColumns",
+            "an operating point that is held still has no scheduling signals; leave one of them out",
+        )
+    return task, {"file": np.frombuffer(content, dtype=np.uint8)}
 
 
 def file_format(name: str) -> Literal["csv", "npz", "mat"]:
@@ -85,6 +119,17 @@ def experiment_of(resource: Resource) -> Experiment:
     return Experiment.model_validate(fields(resource, "jobId"))
 
 
+def local_experiments(
+    resources: ResourceRepository, identifiers: Sequence[str], plant_id: str, pointer: str
+) -> list[Resource]:
+    """The experiments that a list in the body names; raises UnprocessableError where the scheduling varied."""
+    rows = named_of_plant(resources, KIND, identifiers, plant_id, pointer)
+    for i, row in enumerate(rows):
+        if row.document["kind"] == "varyingRecord":
+            raise UnprocessableError.at(f"{pointer}/{i}", VARIED)
+    return rows
+
+
 def get(resources: ResourceRepository, experiment_id: str) -> Experiment:
     """The experiment of an identifier."""
     return experiment_of(resources.get(KIND, experiment_id))
@@ -96,10 +141,17 @@ def page(resources: ResourceRepository, plant_id: str | None, limit: int, cursor
     return ExperimentList(items=items(found, experiment_of), next_cursor=found.next_cursor)
 
 
-def _plant_with_point(resources: ResourceRepository, request: Any) -> Plant:
+def check_point(plant: Plant, request: Any, pointer: str = "/operatingPoint") -> None:
+    """Raises UnprocessableError for an operating point outside the range; there is none where scheduling varied."""
+    point = getattr(request, "operating_point", None)
+    if point is not None:
+        with pointing({}, default=pointer):
+            plant_dependence(plant).points([point])
+
+
+def _plant_of(resources: ResourceRepository, request: Any) -> Plant:
     plant = plant_of(named(resources, "plants", request.plant_id, "/plantId"))
-    with pointing({}, default="/operatingPoint"):
-        plant_dependence(plant).points([request.operating_point])
+    check_point(plant, request)
     if request.design_id is not None:
         of_plant(named(resources, "designs", request.design_id, "/designId"), plant.id, "/designId")
     return plant

@@ -9,8 +9,7 @@ from app.errors import UnprocessableError
 from app.schemas.experiments import Experiment
 from app.schemas.models import Model
 from app.schemas.plants import DiscreteTimeStructure
-from app.services.documents import named_of_plant
-from app.services.experiments import experiment_of
+from app.services.experiments import experiment_of, local_experiments
 from app.services.fitting import SAMPLE_TIME_TOLERANCE
 from app.services.models import model_of
 from app.store.resources import ResourceRepository
@@ -23,7 +22,7 @@ def measured_of_plant(
     resources: ResourceRepository, identifiers: Sequence[str], plant_id: str, pointer: str
 ) -> list[Measured]:
     """The experiments that a list in the body names, with the hashes of their arrays."""
-    rows = named_of_plant(resources, "experiments", identifiers, plant_id, pointer)
+    rows = local_experiments(resources, identifiers, plant_id, pointer)
     return [(experiment_of(row), row.arrays or "") for row in rows]
 
 

@@ -15,8 +15,8 @@ from app.schemas.experiments import Experiment
 from app.schemas.models import Model, ModelList, ModelRequest, StatedModelRequest
 from app.schemas.outcomes import OutcomeDocument
 from app.schemas.plants import Plant
-from app.services.documents import fields, items, named, named_of_plant, of_plant
-from app.services.experiments import experiment_of
+from app.services.documents import fields, items, named, of_plant
+from app.services.experiments import experiment_of, local_experiments
 from app.services.fitting import check_fitting, check_prior
 from app.services.jobs import fingerprint
 from app.services.plants import plant_of
@@ -32,7 +32,7 @@ def submit(container: Container, request: ModelRequest, key: str | None) -> JobR
     """Start the job that identifies a model."""
     resources = container.resources
     plant = plant_of(named(resources, "plants", request.plant_id, "/plantId"))
-    rows = named_of_plant(resources, "experiments", request.experiment_ids, plant.id, "/experimentIds")
+    rows = local_experiments(resources, request.experiment_ids, plant.id, "/experimentIds")
     prior = None
     if request.prior_model_id is not None:
         row = named(resources, KIND, request.prior_model_id, "/priorModelId")
@@ -55,7 +55,7 @@ def payload(
     check_fitting(request, structure, documents)
     if prior is None:
         with pointing({}, default="/experimentIds"):
-            dependence.require_identifiable([experiment.operating_point for experiment in documents])
+            dependence.require_identifiable([experiment.held_at for experiment in documents])
     else:
         require_without_effects(prior, "/priorModelId")
         check_prior(plant, prior, structure, dependence, request.experiment_ids)

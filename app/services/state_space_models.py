@@ -15,8 +15,8 @@ from app.jobs.records import JobRecord
 from app.schemas.experiments import Experiment
 from app.schemas.plants import Plant, StateSpaceStructureDocument
 from app.schemas.state_space import StateSpaceModelRequest
-from app.services.documents import named, named_of_plant
-from app.services.experiments import experiment_of
+from app.services.documents import named
+from app.services.experiments import experiment_of, local_experiments
 from app.services.fitting import check_sample_time
 from app.services.jobs import fingerprint
 from app.services.models import KIND
@@ -31,7 +31,7 @@ def submit(container: Container, request: StateSpaceModelRequest, key: str | Non
     """Start the job that identifies a state-space model."""
     resources = container.resources
     plant = plant_of(named(resources, "plants", request.plant_id, "/plantId"))
-    rows = named_of_plant(resources, "experiments", request.experiment_ids, plant.id, "/experimentIds")
+    rows = local_experiments(resources, request.experiment_ids, plant.id, "/experimentIds")
     task = payload(plant, request, [(experiment_of(row), row.arrays or "") for row in rows])
     mark = fingerprint("createStateSpaceModel", request.model_dump(mode="json"))
     return container.ledger.submit(TASK, task, KIND, plant.id, key, mark)
@@ -49,7 +49,7 @@ def payload(
     _check_experiments(request, structure, documents)
     if request.parametric_estimator is not None:
         with pointing({}, default="/experimentIds"):
-            dependence.require_identifiable([experiment.operating_point for experiment in documents])
+            dependence.require_identifiable([experiment.held_at for experiment in documents])
     if request.refinement is not None:
         _check_refinement(plant, request, structure, dependence)
     return {

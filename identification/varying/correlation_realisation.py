@@ -26,6 +26,7 @@ from identification.varying.records import VaryingRecord
 
 NOISE_FREE = 1e-5
 BEYOND_BOUNDS = 1e100
+MOST_WORDS = 3000
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -101,6 +102,7 @@ class CorrelationRealisation:
         """
         if order is not None and order < 1:
             raise RangeError(f"the order is {order}; it must be one or more", "order")
+        self._require_few_words(record)
         psi = np.concatenate([np.ones((len(record), 1)), record.scheduling], axis=1)
         tests = signal_tests(psi, record.input)
         white = self.parameters == "correlation" or (self.parameters == "automatic" and correlation_applies(tests))
@@ -134,6 +136,18 @@ class CorrelationRealisation:
             corrections=corrections,
             noise_covariance=noise,
         )
+
+    def _require_few_words(self, record: VaryingRecord) -> None:
+        k = record.scheduling.shape[1] + 1
+        most = max(record.input.shape[1], record.output.shape[1]) * sum(
+            float(k) ** n for n in range(1, self.word_length + 1)
+        )
+        if most > MOST_WORDS:
+            raise RangeError(
+                f"words of up to {self.word_length} letters make {most:.3g} rows or columns of the Hankel matrix, at"
+                f" most {MOST_WORDS} are taken; choose shorter words",
+                "word_length",
+            )
 
     def _by_correlation(self, psi: FloatArray, record: VaryingRecord, order: int | None) -> "_Realising":
         depths = self.word_length, self.word_length

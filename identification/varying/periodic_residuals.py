@@ -7,12 +7,15 @@ import numpy as np
 from scipy.special import chdtrc
 
 from identification.arrays import BoolArray, ComplexArray, FloatArray
+from identification.errors import RangeError
 from identification.least_squares import LeastSquaresSolution
 from identification.outcome import TestResult
 from identification.varying.affine_parameters import AffineSizes
 from identification.varying.harmonic_blocks import HarmonicBlocks
 from identification.varying.harmonic_noise import HarmonicNoise, Whitening, harmonic_noise
 from identification.varying.records import SteadyPeriods
+
+MOST_ENTRIES = 20_000_000  # complex numbers in the resolvents of all blocks, twice
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,7 +34,8 @@ class PeriodicResiduals:
 
     @classmethod
     def of(cls, steady: SteadyPeriods, order: int, zero_frequency: bool = True) -> "PeriodicResiduals":
-        """From steady periods, for models with n_x = `order`."""
+        """From steady periods, for models with n_x = `order`; raises RangeError when they need too much memory."""
+        _require_small(steady, order)
         sizes = AffineSizes(order, steady.scheduling.shape[1], steady.input.shape[1], steady.output.shape[2])
         blocks = HarmonicBlocks(sizes, steady.input, steady.scheduling, steady.periodicity.scheduling_period)
         spectrum = np.fft.fft(steady.output.mean(axis=0), axis=0)[blocks.lines]
@@ -64,6 +68,16 @@ class PeriodicResiduals:
         columns = np.concatenate([(output - self.measured)[:, :, None], jacobian], axis=2)[self.used]
         white = self._whitening(columns)
         return white[:, 0], white[:, 1:]
+
+
+def _require_small(steady: SteadyPeriods, order: int) -> None:
+    period, coupled = steady.periodicity.period, steady.periodicity.scheduling_period
+    if period * coupled * order**2 > MOST_ENTRIES:
+        raise RangeError(
+            f"a scheduling of {coupled} samples in a period of {period} couples too many lines for order {order};"
+            " choose a scheduling that repeats itself more often, a shorter period or a lower order",
+            "scheduling",
+        )
 
 
 def lack_of_fit(residuals: PeriodicResiduals, solution: LeastSquaresSolution) -> TestResult:

@@ -7,12 +7,23 @@ from app.conversion.experiments import kind_of, plainest, require_channels
 from app.conversion.extremes import within_doubles
 from app.conversion.fields import field_named
 from app.conversion.inspection import understanding
+from app.conversion.plants import channels, scheduling_variables
+from app.conversion.varying_records import (
+    record_arrays,
+    require_varying_channels,
+    varying_record,
+    varying_understanding,
+)
 from app.files.measurement import Statements, measurement_arrays, read_measurement
+from app.files.varying_record import VaryingStatements, read_varying
 from app.jobs.task import TaskContext, TaskResult
 from app.schemas.experiments import FileFields
+from app.schemas.plants import Plant
 from identification.signals import FrequencyResponse, Measurement, TimeRecord
+from identification.varying.records import VaryingRecord
 
 KIND = "experiment"
+SIGNALS = {"input": "/inputs", "output": "/outputs", "scheduling": "/scheduling"}
 KEPT = {"plantId", "name", "description", "operatingPoint", "designId"}
 
 
@@ -21,6 +32,8 @@ def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
     context.progress(0.1, "reading")
     arrays = context.arrays.get(payload["arrays"])
     stated = payload["stated"]
+    if payload.get("plant") is not None:
+        return _along(payload, arrays, context)
     if payload["source"] == "json":
         data = _from_body(stated, arrays)
     else:
@@ -46,6 +59,44 @@ def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
     return TaskResult(document, kept)
 
 
+def _along(payload: dict[str, Any], arrays: dict[str, Any], context: TaskContext) -> TaskResult:
+    """A record in which the scheduling varied."""
+    plant, stated = Plant.model_validate(payload["plant"]), payload["stated"]
+    if payload["source"] == "json":
+        variables = scheduling_variables(plant)
+        data = varying_record(arrays, stated["sampleTimeSeconds"], stated["periodSamples"], variables)
+    else:
+        data = _varying_from_file(payload["source"], FileFields.model_validate(stated), arrays["file"].tobytes(), plant)
+    context.progress(0.5, "looking at the data")
+    with within_doubles(), field_named(SIGNALS if payload["source"] == "json" else {}, "/file"):
+        understood = varying_understanding(data)
+    document = {
+        **{name: value for name, value in stated.items() if name in KEPT},
+        "operatingPoint": None,
+        "softwareVersion": __version__,
+        "kind": "varyingRecord",
+        "sampleTimeSeconds": data.sample_time,
+        "varianceKnown": False,
+        "varianceDegreesOfFreedom": None,
+        "source": payload["source"],
+        "fileName": payload["fileName"],
+        "understood": understood.as_json(),
+    }
+    return TaskResult(document, context.arrays.put(record_arrays(data)))
+
+
+def _varying_from_file(source: str, stated: FileFields, content: bytes, plant: Plant) -> VaryingRecord:
+    columns = None if stated.scheduling_columns is None else tuple(stated.scheduling_columns)
+    given = VaryingStatements(
+        scheduling_variables(plant), stated.sample_time_seconds, stated.period_samples, stated.variable_group, columns
+    )
+    fields = dict.fromkeys(("input", "output", "scheduling"), "/file")
+    with field_named({**fields, "period": "/periodSamples", "sample_time": "/sampleTimeSeconds"}):
+        data = read_varying(content, source, given)
+        require_varying_channels(data, channels(plant))
+    return data
+
+
 def _from_body(stated: dict[str, Any], arrays: dict[str, Any]) -> Measurement:
     point = tuple(stated["operatingPoint"])
     if stated["kind"] == "timeRecord":
@@ -66,7 +117,7 @@ def _from_file(source: str, stated: FileFields, content: bytes, channels: tuple[
         content,
         source,
         Statements(
-            tuple(stated.operating_point),
+            tuple(stated.operating_point or ()),
             stated.sample_time_seconds,
             stated.period_samples,
             stated.variable_group,
