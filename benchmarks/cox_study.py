@@ -24,6 +24,7 @@ from benchmarks.processes import spread
 from identification.affine_state_space import Matrices, best_fit_rate, simulate_matrices, variance_accounted_for
 from identification.correlation_analysis import CorrelatedSubMarkov, WhiteExcitation
 from identification.ho_kalman import Realisation, full_realisation, largest_entries, reduced_realisation
+from identification.scheduling import with_constant
 from identification.sub_markov import BasisSelection, every_word
 from identification.varying.correlation_realisation import CorrelationRealisation
 from identification.varying.records import VaryingRecord
@@ -82,8 +83,7 @@ def _run(record: VaryingRecord, held_out: VaryingRecord, level: float, refine: b
 
 
 def _correlated(record: VaryingRecord) -> CorrelatedSubMarkov:
-    psi = np.concatenate([np.ones((len(record), 1)), record.scheduling], axis=1)
-    return WhiteExcitation(psi, record.input).fit(record.output)
+    return WhiteExcitation(with_constant(record.scheduling), record.input).fit(record.output)
 
 
 def _reduced(record: VaryingRecord, selected: tuple[BasisSelection, BasisSelection]) -> Realisation:

@@ -46,13 +46,14 @@ class WhiteExcitation:
     @cached_property
     def input_dual(self) -> FloatArray:
         """u*, (n_u, N)."""
-        centred = self.input - self.input.mean(axis=0)
-        variance = centred.T @ centred / len(centred)
+        signals = np.ascontiguousarray(self.input.T)
+        centred = signals - signals.mean(axis=1, keepdims=True)
+        variance = centred @ centred.T / len(self.input)
         if _singular(variance):
             raise NotIdentifiableError(
                 "an input is constant or a combination of the others; excite every input on its own", "input"
             )
-        return np.asarray(np.linalg.inv(variance) @ centred.T)
+        return np.asarray(np.linalg.inv(variance) @ centred)
 
     @cached_property
     def pulses(self) -> FloatArray:
@@ -71,8 +72,8 @@ class CorrelatedSubMarkov:
         Ĉ_{s₁}A_{s₂} ⋯ B_{s_n} = 1/(N−n+1) Σ_t y(t) ψ*_{s₁}(t) ψ*_{s₂}(t−1) ⋯ ψ*_{s_n}(t−n+1) u*(t−n+1)ᵀ
 
     `output` (N, n_y) from rest. Assumes u white (A2), ψ white and independent of u (A3), noise independent of both.
-    All parameters with rows of one length come from one matrix product. Raises ShapeError for unequal lengths,
-    NotIdentifiableError when the record is too short for the words.
+    All parameters between selected rows and columns come from one matrix product. Raises ShapeError for unequal
+    lengths, NotIdentifiableError when the record is too short for the words.
     """
 
     excitation: WhiteExcitation
@@ -88,17 +89,19 @@ class CorrelatedSubMarkov:
     def _output_rows(self) -> FloatArray:
         return np.ascontiguousarray(self.output.T)
 
+    @cached_property
+    def _scheduled_output(self) -> FloatArray:
+        """ψ*_γ(t) y_i(t), (k n_y, N)."""
+        return np.asarray((self._psi_dual[:, None] * self._output_rows).reshape(-1, len(self.output)))
+
     @property
     def _psi_dual(self) -> FloatArray:
         return self.excitation.psi_dual
 
-    @property
-    def _input_dual(self) -> FloatArray:
-        return self.excitation.input_dual
-
     def hankel(self, rows: BasisSelection, columns: BasisSelection) -> FloatArray:
         """ℋ_{ν,ς}, (n_o, n_r)."""
-        return _products(self._rows(rows), self._columns(columns), rows, columns.lengths)
+        left, right = self._rows(rows), self._columns(columns)
+        return self._means(left, right)[left.places][:, right.places]
 
     def direct(self) -> FloatArray:
         """D_k, (k, n_y, n_u)."""
@@ -107,72 +110,95 @@ class CorrelatedSubMarkov:
         return np.asarray(found.reshape(len(found), k, -1).transpose(1, 0, 2))
 
     def blocks(self, rows: BasisSelection, columns: BasisSelection) -> HankelBlocks:
-        """All blocks of the basis-reduced realisation, the columns of them all side by side in the products."""
-        left, right = self._rows(rows), self._columns(columns)
-        n_r, n_u, (k, n) = len(columns), len(self._input_dual), self._psi_dual.shape
-        beside = np.empty(((k + 1) * n_r + k * n_u, n))
-        beside[:n_r] = right
-        longer = beside[n_r : -k * n_u].reshape(k, n_r, n)
-        longer[:, :, 0] = 0.0
-        np.multiply(self._psi_dual[:, None, 1:], right[:, :-1], out=longer[:, :, 1:])
-        beside[-k * n_u :] = self.excitation.pulses
-        lengths = np.concatenate([columns.lengths, np.tile(columns.lengths + 1, k), np.ones(k * n_u, dtype=np.int64)])
-        found = _products(left, beside, rows, lengths)
+        """All blocks of the basis-reduced realisation, those without A_k from one product."""
+        left, right, k = self._rows(rows), self._columns(columns), len(self._psi_dual)
+        means = self._means(left, right)
         return HankelBlocks(
-            found[:, :n_r],
-            found[:, n_r : -k * n_u].reshape(len(rows), k, n_r).transpose(1, 0, 2),
-            found[:, -k * n_u :].reshape(len(rows), k, n_u).transpose(1, 0, 2),
-            self._to_output(right, columns.lengths),
+            means[left.places][:, right.places],
+            self._shifted(left, right) / (len(self.output) - rows.lengths[:, None] - columns.lengths),
+            means[left.places, : len(self.excitation.pulses)].reshape(len(rows), k, -1).transpose(1, 0, 2),
+            means[: len(self._scheduled_output), right.places].reshape(k, -1, len(columns)),
             self.direct(),
         )
 
-    def _to_output(self, right: FloatArray, lengths: IntArray) -> FloatArray:
-        """C_k ℛ_ς, (k, n_y, n_r)."""
-        k, n = self._psi_dual.shape
-        left = (self._psi_dual[:, None] * self._output_rows).reshape(-1, n)
-        found = left[:, 1:] @ right[:, :-1].T / (n - lengths)
-        return np.asarray(found.reshape(k, -1, len(right)))
+    def _means(self, left: "_Sequences", right: "_Sequences") -> FloatArray:
+        samples = len(self.output) + 1 - left.lengths[:, None] - right.lengths
+        return np.asarray(left.values @ right.values[:, :-1].T / samples)
 
-    def _rows(self, rows: BasisSelection) -> FloatArray:
-        """y_i(t) ψ*_{γ}(t) ψ*_{a₁}(t−1) ⋯, (n_o, N)."""
-        rows.require_within(len(self._psi_dual), len(self._output_rows), "rows")
+    def _shifted(self, left: "_Sequences", right: "_Sequences") -> FloatArray:
+        """Sums for 𝒪_ν A_k ℛ_ς, (k, n_o, n_r), the prolonged columns held for one letter at a time."""
+        rows, columns = left.values[left.places, 1:], right.values[right.places, :-2]
+        found, longer = np.empty((len(self._psi_dual), len(rows), len(columns))), np.empty_like(columns)
+        for part, psi in zip(found, self._psi_dual, strict=True):
+            np.matmul(rows, np.multiply(psi[1:-1], columns, out=longer).T, out=part)
+        return found
+
+    def _rows(self, rows: BasisSelection) -> "_Sequences":
+        """y_i(t+l) ψ*_γ(t+l) ψ*_{a₁}(t+l−1) ⋯ of words of l letters, t = 0 … N − 2, zero after the record's end."""
+        psi, (k, n), first = self._psi_dual, self._psi_dual.shape, self._scheduled_output
+        n_y = len(first) // k
+        rows.require_within(k, n_y, "rows")
         self._require_samples(rows)
-        return _delayed_products(self._psi_dual, self._output_rows, rows, at_end=False)
+        found = _Sequences.room(first[:, 1:], rows)
+        for length, (at, letters, channels) in rows.letters.items():
+            start = letters[0] * n_y + channels
+            if length == 1:
+                found.places[at] = start
+                continue
+            part = first[start, length:]
+            for delay in range(1, length):
+                part *= psi[letters[delay], length - delay : n - delay]
+            found.values[found.places[at], : n - length] = part
+        return found
 
-    def _columns(self, columns: BasisSelection) -> FloatArray:
-        """ψ*_{c₁}(t) ⋯ ψ*_{c_m}(t−m+1) u*_j(t−m+1), (n_r, N), zero where the record has not begun."""
-        columns.require_within(len(self._psi_dual), len(self._input_dual), "columns")
+    def _columns(self, columns: BasisSelection) -> "_Sequences":
+        """ψ*_{c₁}(t) ⋯ ψ*_{c_m}(t−m+1) u*_j(t−m+1), t = 0 … N − 1, zero where the record has not begun."""
+        psi, (k, n), last = self._psi_dual, self._psi_dual.shape, self.excitation.pulses
+        n_u = len(last) // k
+        columns.require_within(k, n_u, "columns")
         self._require_samples(columns)
-        return _delayed_products(self._psi_dual, self._input_dual, columns, at_end=True)
+        found = _Sequences.room(last, columns)
+        for length, (at, letters, channels) in columns.letters.items():
+            end = letters[-1] * n_u + channels
+            if length == 1:
+                found.places[at] = end
+                continue
+            part = last[end, : n - length + 1]
+            for delay in range(length - 1):
+                part *= psi[letters[delay], length - 1 - delay : n - delay]
+            found.values[found.places[at], length - 1 :] = part
+        return found
 
     def _require_samples(self, words: BasisSelection) -> None:
-        longest, samples = int(words.lengths.max()), len(self.output)
-        if samples < 4 * (longest + 1):
+        samples = len(self.output)
+        if samples < 4 * (words.longest + 1):
             raise NotIdentifiableError(
-                f"{samples} samples are too few for words of {longest} letters; record longer", "output"
+                f"{samples} samples are too few for words of {words.longest} letters; record longer", "output"
             )
 
 
-def _products(left: FloatArray, right: FloatArray, rows: BasisSelection, lengths: IntArray) -> FloatArray:
-    """Mean of left (n_o, N) at t times right (m, N) at t − l, l the length of the row: one product for each l."""
-    n = right.shape[1]
-    found = np.empty((len(left), len(right)))
-    for length, (at, _, _) in rows.letters.items():
-        part = left if len(at) == len(left) else left[at]
-        found[at] = part[:, length:] @ right[:, : n - length].T / (n - length - lengths + 1)
-    return found
+@dataclass(frozen=True, eq=False)
+class _Sequences:
+    """Those of all words of one letter, and after them those of the longer ones that are selected.
 
+    `values` (words, samples), `lengths` letters of each word, `places` where those selected stand.
+    """
 
-def _delayed_products(psi: FloatArray, signal: FloatArray, words: BasisSelection, at_end: bool) -> FloatArray:
-    n = psi.shape[1]
-    found = np.zeros((len(words), n))
-    for length, (at, letters, channels) in words.letters.items():
-        last = length - 1
-        part = signal[channels, : n - last] if at_end else signal[channels, last:]
-        for delay, letter in enumerate(letters):
-            part = part * psi[letter, last - delay : n - delay]
-        found[at, last:] = part
-    return found
+    values: FloatArray
+    lengths: IntArray
+    places: IntArray
+
+    @classmethod
+    def room(cls, one_letter: FloatArray, words: BasisSelection) -> "_Sequences":
+        """With zeros for the longer words."""
+        ones = np.ones(len(one_letter), dtype=np.int64)
+        if words.longest == 1:
+            return cls(one_letter, ones, np.empty(len(words), dtype=np.int64))
+        longer = words.lengths > 1
+        lengths, places = np.concatenate([ones, words.lengths[longer]]), len(ones) - 1 + np.cumsum(longer)
+        values = np.zeros((len(lengths), one_letter.shape[1]))
+        values[: len(one_letter)] = one_letter
+        return cls(values, lengths, places)
 
 
 def _singular(moments: FloatArray) -> bool:

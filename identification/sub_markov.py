@@ -46,6 +46,19 @@ class BasisSelection:
         return np.array([len(word) for word in self.words], dtype=np.int64)
 
     @cached_property
+    def longest(self) -> int:
+        """Letters of the longest word."""
+        return max(map(len, self.words))
+
+    @cached_property
+    def _largest_letter(self) -> int:
+        return max(map(max, self.words))
+
+    @cached_property
+    def _largest_channel(self) -> int:
+        return max(self.channels)
+
+    @cached_property
     def letters(self) -> dict[int, tuple[IntArray, IntArray, IntArray]]:
         """By length l of words: positions (m,) in the selection, letters (l, m) and channels (m,)."""
         found = {}
@@ -61,7 +74,7 @@ class BasisSelection:
 
     def require_within(self, basis_functions: int, channels: int, field: str) -> None:
         """Raises RangeError when a letter is not below `basis_functions` or a channel not below `channels`."""
-        if max(max(word) for word in self.words) >= basis_functions or max(self.channels) >= channels:
+        if self._largest_letter >= basis_functions or self._largest_channel >= channels:
             raise RangeError(
                 f"{field} name a basis function or channel that the system does not have: there are {basis_functions}"
                 f" basis functions (with the constant) and {channels} channels, counted from 0",

@@ -18,6 +18,7 @@ from identification.correlation_assumptions import (
 from identification.errors import MisuseError, NotIdentifiableError, RangeError
 from identification.ho_kalman import Realisation, full_realisation, largest_entries, reduced_realisation
 from identification.outcome import Outcome
+from identification.scheduling import with_constant
 from identification.sub_markov import BasisSelection, ExactSubMarkov, SubMarkovSource, SummedSubMarkov, every_word
 from identification.sub_markov_least_squares import WordRegression
 from identification.varying.output_error import output_error
@@ -103,7 +104,7 @@ class CorrelationRealisation:
         if order is not None and order < 1:
             raise RangeError(f"the order is {order}; it must be one or more", "order")
         self._require_few_words(record)
-        psi = np.concatenate([np.ones((len(record), 1)), record.scheduling], axis=1)
+        psi = with_constant(record.scheduling)
         tests = signal_tests(psi, record.input)
         white = self.parameters == "correlation" or (self.parameters == "automatic" and correlation_applies(tests))
         realising = self._by_correlation(psi, record, order) if white else self._by_least_squares(psi, record, order)

@@ -10,6 +10,7 @@ from identification.affine_state_space import AffineStateSpace, frozen_matrices,
 from identification.arrays import FloatArray
 from identification.errors import MisuseError, NotIdentifiableError, RangeError
 from identification.outcome import Outcome
+from identification.scheduling import with_constant
 from identification.varying.affine_parameters import stated_order
 from identification.varying.periodic_observability import common_basis, periodic_observability
 from identification.varying.progress import Progress, silent
@@ -65,7 +66,7 @@ class PeriodicMoesp:
         period = scheduling_period(record, self.tolerance)
         window = self._window(order, period)
         fitted = record if validation is not None else record.part(0, len(record) - len(record) // 5)
-        weights = _weights(record.scheduling[:period])
+        weights = with_constant(record.scheduling[:period])
         observability = periodic_observability(fitted.input, fitted.output, period, window, order)
         scored, n_y = [], record.output.shape[1]
         for i, regularisation in enumerate(self.regularisations):
@@ -137,10 +138,6 @@ class PeriodicMoesp:
             return float(np.mean(error[first:] ** 2)), model
 
 
-def _weights(scheduling: FloatArray) -> FloatArray:
-    return np.concatenate([np.ones((len(scheduling), 1)), scheduling], axis=1)
-
-
 def affine_dynamics(
     bases: FloatArray, weights: FloatArray, n_y: int, varying_output: bool = True
 ) -> tuple[FloatArray, FloatArray]:
@@ -165,7 +162,7 @@ def with_inputs(a: FloatArray, c: FloatArray, record: VaryingRecord) -> AffineSt
     """
     m, order = a.shape[:2]
     n_y, n_u, count = c.shape[1], record.input.shape[1], len(record)
-    weights = _weights(record.scheduling)
+    weights = with_constant(record.scheduling)
     at, _, ct, _ = frozen_matrices((a, a, c, c), record.scheduling)
     driven = (weights[:, :, None] * record.input[:, None, :]).reshape(count, -1)
     forcing = np.zeros((order, m * n_u, count, order))
