@@ -5,8 +5,11 @@ from functools import cached_property
 
 import numpy as np
 
+from identification.affine_state_space import Matrices
 from identification.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from identification.scheduling import with_constant
 from identification.varying.affine_parameters import AffineSizes
+from identification.varying.period_recursion import periodic_response
 
 
 @dataclass(frozen=True, eq=False)
@@ -18,17 +21,19 @@ class HarmonicBlocks:
     `input` (P, n_u) and `scheduling` (P, n_p) are one period, T = `scheduling_period` a divisor of P; μ_i is the
     discrete Fourier transform of p_i over T samples, divided by T, p_0 = 1. Only lines r, r + P/T, r + 2P/T, … are
     coupled, so the equations fall into P/T blocks of T n_x unknowns; block −r is the conjugate of block r, and half of
-    them are solved, all in one batch.
+    them are solved, all in one batch. That grows with T² n_x³ P; where T n_x is above `largest_block` and the model
+    stable, the period is run through in time instead, which does not grow with T.
     """
 
     sizes: AffineSizes
     input: FloatArray
     scheduling: FloatArray
     scheduling_period: int
+    largest_block: int = 40
 
     @cached_property
     def _weights(self) -> FloatArray:
-        return np.concatenate([np.ones((len(self.scheduling), 1)), self.scheduling], axis=1)
+        return with_constant(self.scheduling)
 
     @property
     def period(self) -> int:
@@ -75,11 +80,15 @@ class HarmonicBlocks:
 
     def stable(self, theta: FloatArray) -> bool:
         """Whether what an initial state leaves dies out: the spectral radius of A(T−1) … A(0) is below one."""
-        a = self.sizes.split(theta)[0]
-        product = np.eye(self.sizes.order)
-        for weights in self._weights[: self.scheduling_period]:
-            product = np.tensordot(weights, a, 1) @ product
-        return bool(np.all(np.isfinite(product)) and abs(np.linalg.eigvals(product)).max() < 1)
+        product = np.tensordot(self._weights[: self.scheduling_period], self.sizes.split(theta)[0], 1)
+        with np.errstate(over="ignore", invalid="ignore"):
+            while len(product) > 1:
+                even = 2 * (len(product) // 2)
+                product = np.concatenate([product[1:even:2] @ product[:even:2], product[even:]])
+        return bool(np.all(np.isfinite(product)) and abs(np.linalg.eigvals(product[0])).max() < 1)
+
+    def _by_recursion(self, theta: FloatArray) -> bool:
+        return self.scheduling_period * self.sizes.order > self.largest_block and self.stable(theta)
 
     def _coupled(self, stack: FloatArray) -> ComplexArray:
         """Σ_i μ_i ⊗ M_i as a matrix over (line, row) and (line, column)."""
@@ -95,21 +104,20 @@ class HarmonicBlocks:
         matrices[:, diagonal, diagonal] += np.repeat(self._shifts, self.sizes.order, axis=1)
         return np.asarray(np.linalg.inv(matrices))
 
-    def states(self, theta: FloatArray) -> ComplexArray:
-        """X (blocks, T, n_x)."""
-        a, b, _, _ = self.sizes.split(theta)
-        return self._states(self._resolvent(a), b)
-
     def _states(self, resolvent: ComplexArray, b: FloatArray) -> ComplexArray:
+        """X (blocks, T, n_x)."""
         blocks, period = self.block_lines.shape
         forcing = np.tensordot(self._block_input, b, axes=([2, 3], [0, 2])).reshape(blocks, -1, 1)
         return np.asarray((resolvent @ forcing).reshape(blocks, period, self.sizes.order))
 
     def output(self, theta: FloatArray) -> ComplexArray:
         """Y at `lines`, (F, n_y)."""
-        _, _, c, d = self.sizes.split(theta)
+        a, b, c, d = self.sizes.split(theta)
+        if self._by_recursion(theta):
+            response = periodic_response((a, b, c, d), self.input, self.scheduling)
+            return np.asarray(np.fft.fft(response.output, axis=0)[self.lines])
         blocks, period = self.block_lines.shape
-        states = self.states(theta).reshape(blocks, -1, 1)
+        states = self._states(self._resolvent(a), b).reshape(blocks, -1, 1)
         through = np.tensordot(self._block_input, d, axes=([2, 3], [0, 2]))
         return np.asarray(((self._coupled(c) @ states).reshape(blocks, period, -1) + through)[self._kept])
 
@@ -118,7 +126,16 @@ class HarmonicBlocks:
 
         ∂Y/∂A_i[a, b] = Γ (zI − A)⁻¹ e_a (μ_i ∗ X)_b,   ∂Y/∂C_i[y, b] = e_y (μ_i ∗ X)_b,   p_i u for B_i and D_i
         """
-        a, b, c, d = self.sizes.split(theta)
+        n, n_y = self.sizes.order, self.sizes.n_outputs
+        solved = self._recursion if self._by_recursion(theta) else self._blocks
+        output, signals, through = solved(self.sizes.split(theta))
+        outer = np.einsum("yw,fmj->fymwj", np.eye(n_y), signals)
+        parts = (through[..., :n], through[..., n:], outer[..., :n], outer[..., n:])
+        return output, np.concatenate([part.reshape(*part.shape[:2], -1) for part in parts], axis=2)
+
+    def _blocks(self, matrices: Matrices) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
+        """Y, the spectra p_i ∗ (X, U) (F, 1 + n_p, n + n_u), and Γ (zI − A)⁻¹ e_a of them (F, n_y, 1 + n_p, n, …)."""
+        a, b, c, d = matrices
         blocks, period = self.block_lines.shape
         n, n_y, m = self.sizes.order, self.sizes.n_outputs, len(a)
         resolvent = self._resolvent(a)
@@ -131,7 +148,17 @@ class HarmonicBlocks:
         through = (self._coupled(c) @ resolvent).reshape(blocks, period * n_y, period, n).transpose(0, 1, 3, 2)
         flat = through.reshape(blocks, period * n_y * n, period) @ signals.reshape(blocks, period, -1)
         inner = flat.reshape(blocks, period, n_y, n, m, -1)[self._kept].transpose(0, 1, 3, 2, 4)
-        outer = np.einsum("yw,fmj->fymwj", np.eye(n_y), signals[self._kept])
-        parts = (inner[..., :n], inner[..., n:], outer[..., :n], outer[..., n:])
-        jacobian = np.concatenate([part.reshape(*part.shape[:2], -1) for part in parts], axis=2)
-        return np.asarray(output[self._kept]), jacobian
+        return np.asarray(output[self._kept]), signals[self._kept], inner
+
+    def _recursion(self, matrices: Matrices) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
+        """The same from the signals of a period."""
+        response = periodic_response(matrices, self.input, self.scheduling)
+        parts = response.output, response.signals, response.through().swapaxes(2, 3)
+        mirrored = self.lines > self.period // 2
+        spectra = [
+            np.fft.rfft(part, axis=0)[np.where(mirrored, self.period - self.lines, self.lines)] for part in parts
+        ]
+        for spectrum in spectra:
+            spectrum[mirrored] = spectrum[mirrored].conj()
+        output, signals, through = spectra
+        return output, signals, through
