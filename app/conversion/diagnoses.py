@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from app.arrays import ComplexVector
-from app.conversion.effects import effect_documents, parameters_of
+from app.conversion.effects import effect_documents, parameters_of, quantity_of
 from app.conversion.models import outcome_document, test_documents
 from app.schemas.diagnoses import EffectVisibility, Evidence, ExplainedResponse, MissingResponse, RankedEffect, Verdict
 from app.schemas.experiments import Experiment
@@ -57,6 +57,7 @@ def _ranked(found: Diagnosis, score: Score) -> RankedEffect:
         title=effect.title,
         place=effect.place,
         unit=effect.unit,
+        quantity=quantity_of(effect),
         announced=any(one.score is score for one in found.announced),
         parameters=parameters_of(effect),
         score=float(score.statistic),
@@ -83,6 +84,7 @@ def _visibility(found: Diagnosis, one: Visibility) -> EffectVisibility:
     return EffectVisibility(
         kind=one.effect.kind,
         title=one.effect.title,
+        quantity=quantity_of(one.effect),
         status="visible" if one.amplitude is not None else "invisible" if judged else "notJudged",
         detectable_amplitude=one.amplitude,
         kept=float(one.kept),

@@ -13,6 +13,7 @@ from app.schemas.models import Model
 from app.schemas.plants import Plant
 from identification.arrays import FloatArray
 from identification.effects.library import library
+from identification.effects.second_variable import SecondVariable
 from identification.extension.model import ExtendedModel, PlacedEffect
 from identification.places.place import Effect
 
@@ -33,7 +34,11 @@ def placed_effect(document: PlacedEffectDocument) -> PlacedEffect:
     effect = effect_of(document.kind)
     assert effect is not None, "kept models carry effects of the library"
     hints = typing.get_type_hints(type(effect))
-    values = {one.name: round(one.value) if hints[one.name] is int else one.value for one in document.parameters}
+    values: dict[str, float | str] = {
+        one.name: round(one.value) if hints[one.name] is int else one.value for one in document.parameters
+    }
+    if document.quantity is not None:
+        values["quantity"] = document.quantity
     coefficients = np.array(document.coefficients, dtype=np.float64)
     return PlacedEffect(dataclasses.replace(effect, **values), coefficients, document.amplitude_degree)
 
@@ -64,6 +69,11 @@ def parameters_of(effect: Effect, deviations: Sequence[float] | None = None) -> 
     ]
 
 
+def quantity_of(effect: Effect) -> str | None:
+    """The logged quantity that an effect depends on, or None."""
+    return effect.quantity or None if isinstance(effect, SecondVariable) else None
+
+
 def _deviations(covariance: FloatArray | None, part: slice) -> FloatArray | None:
     if covariance is None or not np.isfinite(covariance).all():
         return None
@@ -79,6 +89,7 @@ def _document(one: PlacedEffect, deviations: FloatArray | None) -> PlacedEffectD
         title=one.effect.title,
         place=one.effect.place,
         unit=one.effect.unit,
+        quantity=quantity_of(one.effect),
         amplitude_degree=one.degree,
         coefficients=one.coefficients.tolist(),
         standard_deviations=finite_list_or_none(amplitudes),

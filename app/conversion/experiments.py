@@ -14,6 +14,8 @@ from app.schemas.experiments import (
     TimeRecordRequest,
 )
 from app.store.arrays import ArrayStore
+from identification.comparison.batch import Batch
+from identification.comparison.gather import gather
 from identification.errors import ShapeError
 from identification.signals import FrequencyResponse, Measurement, TimeRecord
 
@@ -82,6 +84,17 @@ def kept_measurement(experiment: Experiment, arrays: Mapping[str, NDArray[Any]])
         arrays.get("variance"),
         experiment.variance_degrees_of_freedom,
     )
+
+
+def logged_values(experiment: Experiment) -> dict[str, float]:
+    """The logged quantities by name and unit, such as temperature [K]: other units are another quantity."""
+    return {f"{one.name} [{one.unit}]" if one.unit else one.name: one.value for one in experiment.logged_quantities}
+
+
+def kept_batches(given: Sequence[Mapping[str, Any]], arrays: ArrayStore, mean_value: bool) -> tuple[Batch, ...]:
+    """The experiments in a payload with their logged quantities, ready to be compared with a model."""
+    logged = [logged_values(Experiment.model_validate(one["document"])) for one in given]
+    return gather(kept_measurements(given, arrays), mean_value, logged)
 
 
 def kept_measurements(given: Sequence[Mapping[str, Any]], arrays: ArrayStore) -> list[Measurement]:

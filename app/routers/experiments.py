@@ -1,5 +1,6 @@
 """Experiments: bring data in, look at it, take it out."""
 
+import json
 from typing import Annotated, Any, get_args
 
 from fastapi import APIRouter, File, Form, Query, Response, UploadFile
@@ -59,6 +60,9 @@ def upload_experiment(
     group: Annotated[
         str, Form(alias="variableGroup", description="structure of a mat file that holds the arrays, e.g. data.run1")
     ] = "",
+    logged: Annotated[
+        str, Form(alias="loggedQuantities", description='quantities written down, as JSON: [{"name", "unit", "value"}]')
+    ] = "[]",
     key: IdempotencyKey = None,
 ) -> Job:
     """Bring in a file; its columns or arrays are found by their names.
@@ -79,10 +83,19 @@ def upload_experiment(
             "sampleTimeSeconds": sample_time,
             "periodSamples": period,
             "variableGroup": group,
+            "loggedQuantities": _json(logged),
         }
     )
     record = experiments.submit_file(container, stated, file.file.read(), file.filename or "", key)
     return accepted(record, response)
+
+
+def _json(text: str) -> Any:
+    """What a form field holds as JSON; the text itself, which no schema takes, when it is none."""
+    try:
+        return json.loads(text)
+    except ValueError:
+        return text
 
 
 def _checked(form: dict[str, Any]) -> FileFields:

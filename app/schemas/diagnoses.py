@@ -71,6 +71,7 @@ class RankedEffect(CamelModel):
     title: str
     place: str
     unit: str
+    quantity: str | None = Field(default=None, description="logged quantity, with its unit, that it depends on")
     announced: bool = Field(description="one of those that cannot be told apart and may be what is missing")
     parameters: list[EffectParameter] = Field(description="of the variant with the best score")
     score: Double = Field(description="Rao score S; negative where the amplitude would have the wrong sign")
@@ -84,6 +85,7 @@ class EffectVisibility(CamelModel):
 
     kind: str
     title: str
+    quantity: str | None = Field(default=None, description="logged quantity, with its unit, that it depends on")
     status: Literal["visible", "invisible", "notJudged"] = Field(
         description="invisible: the fitted parameters take up all of it; notJudged: the data are not of the kind needed"
     )

@@ -22,6 +22,7 @@ class PlacedEffectDocument(CamelModel):
     title: str
     place: str = Field(description="where it acts")
     unit: str = Field(description="unit of the amplitude")
+    quantity: str | None = Field(default=None, description="logged quantity, with its unit, that it depends on")
     amplitude_degree: Integer = Field(description="degree of e in each scheduling variable")
     coefficients: Matrix = Field(description="of e, one row for each amplitude of the effect")
     standard_deviations: Matrix | None = Field(description="of the coefficients; null when the data leave them open")

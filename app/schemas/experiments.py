@@ -2,7 +2,7 @@
 
 from typing import Annotated, Literal
 
-from pydantic import Field, RootModel, field_validator
+from pydantic import AfterValidator, Field, RootModel, field_validator
 
 from app.arrays import ComplexMatrices, ComplexVector, Matrices, matrices_shape
 from app.schemas.common import CamelModel, Double, Integer, Timestamp
@@ -13,6 +13,23 @@ Values = list[Double]
 ExperimentKind = Literal["timeRecord", "frequencyResponse", "matrixFrequencyResponse", "varyingRecord"]
 
 
+class LoggedQuantity(CamelModel):
+    """A quantity that was written down while measuring, and that is no scheduling variable."""
+
+    name: Name = Field(description="what it is, e.g. ambient temperature")
+    unit: Text = Field(default="", description="its unit; the same in all experiments that are to be compared")
+    value: Double = Field(description="its mean during the experiment")
+
+
+def _named_once(quantities: list[LoggedQuantity]) -> list[LoggedQuantity]:
+    if len({one.name for one in quantities}) < len(quantities):
+        raise ValueError("a quantity is named twice; give one value for each")
+    return quantities
+
+
+LoggedQuantities = Annotated[list[LoggedQuantity], Field(max_length=20), AfterValidator(_named_once)]
+
+
 class ExperimentFields(CamelModel):
     """What every experiment states."""
 
@@ -20,6 +37,9 @@ class ExperimentFields(CamelModel):
     name: Text = ""
     description: LongText = ""
     design_id: Identifier | None = Field(default=None, description="the design that this experiment carries out")
+    logged_quantities: LoggedQuantities = Field(
+        default_factory=list, description="such as temperatures; a diagnosis asks whether the plant depends on them"
+    )
 
 
 class LocalExperimentFields(ExperimentFields):

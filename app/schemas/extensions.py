@@ -8,13 +8,16 @@ from app.schemas.common import CamelModel
 from app.schemas.comparisons import ExperimentIds
 from app.schemas.diagnoses import AmplitudeDegree, Kind, Seed
 from app.schemas.experiments import Identifier
-from app.schemas.plants import LongText, Text
+from app.schemas.plants import LongText, Name, Text
 
 
 class ExtensionRequest(CamelModel):
     """Which effect to add to a model, and which experiments to fit both to."""
 
     effect: Kind = Field(description="its kind, as in the catalogue")
+    quantity: Name | None = Field(
+        default=None, description="which logged quantity second_variable is; needed where several were logged"
+    )
     amplitude_degree: AmplitudeDegree = Field(default=0, description="of the amplitude in each scheduling variable")
     experiment_ids: ExperimentIds = Field(description="the parameters of model and effect are fitted to these together")
     held_out_experiment_ids: Annotated[list[Identifier], Field(max_length=1000)] = Field(

@@ -23,7 +23,14 @@ from app.schemas.models import Model
 from app.schemas.plants import Plant
 from app.services.documents import fields, items, named
 from app.services.jobs import fingerprint
-from app.services.measured import Measured, check_time_domain, fitted_experiments, measured_of_plant, payload_of
+from app.services.measured import (
+    Measured,
+    check_logged,
+    check_time_domain,
+    fitted_experiments,
+    measured_of_plant,
+    payload_of,
+)
 from app.services.models import model_of
 from app.services.plants import plant_of
 from app.store.resources import Resource, ResourceRepository
@@ -48,6 +55,7 @@ def payload(
 ) -> dict[str, Any]:
     """What the task gets; raises UnprocessableError when model and experiments cannot be compared."""
     check_time_domain(model, experiments, "/experimentIds")
+    check_logged(model, experiments, "/experimentIds")
     data: list[Data] = ["fitted" if experiment.id in fitted else "heldOut" for experiment, _ in experiments]
     if "heldOut" in data and (model.joint_covariance if model.effects else model.covariance) is None:
         raise UnprocessableError.at(

@@ -12,7 +12,14 @@ from app.schemas.plants import Plant
 from app.services.comparisons import comparison_of
 from app.services.documents import fields, items, named
 from app.services.jobs import fingerprint
-from app.services.measured import Measured, check_effect, check_time_domain, measured_of_plant, payload_of
+from app.services.measured import (
+    Measured,
+    check_effect,
+    check_logged,
+    check_time_domain,
+    measured_of_plant,
+    payload_of,
+)
 from app.services.models import model_of
 from app.services.plants import plant_of
 from app.store.resources import Resource, ResourceRepository
@@ -37,6 +44,7 @@ def payload(
 ) -> dict[str, Any]:
     """What the task gets; raises UnprocessableError when experiments, model and effects do not fit each other."""
     check_time_domain(model, experiments, pointer)
+    check_logged(model, experiments, pointer)
     asked = request.effects or []
     if len(set(asked)) < len(asked):
         raise UnprocessableError.at("/effects", "the same effect is named twice")

@@ -15,7 +15,9 @@ from app.services.jobs import fingerprint
 from app.services.measured import (
     Measured,
     check_effect,
+    check_logged,
     check_time_domain,
+    chosen_quantity,
     fitted_experiments,
     measured_of_plant,
     payload_of,
@@ -52,6 +54,9 @@ def payload(
     check_effect(request.effect, [*experiments, *held_out], "/effect")
     check_time_domain(model, experiments, "/experimentIds")
     check_time_domain(model, held_out, HELD_OUT)
+    check_logged(model, experiments, "/experimentIds")
+    check_logged(model, held_out, HELD_OUT)
+    quantity = chosen_quantity(request.effect, request.quantity, [*experiments, *held_out])
     known = fitted | set(request.experiment_ids)
     for i, (experiment, _) in enumerate(held_out):
         if experiment.id in known:
@@ -64,6 +69,7 @@ def payload(
         "request": request.as_json(),
         "experiments": payload_of(experiments),
         "heldOut": payload_of(held_out),
+        "quantity": quantity,
     }
 
 

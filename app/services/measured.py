@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from app.conversion.effects import effect_of
+from app.conversion.experiments import logged_values
 from app.conversion.plants import is_state_space
 from app.errors import UnprocessableError
 from app.schemas.experiments import Experiment
@@ -78,11 +79,46 @@ def check_effect(kind: str, experiments: Sequence[Measured], pointer: str) -> No
     effect = effect_of(kind)
     if effect is None:
         raise UnprocessableError.at(pointer, f"there is no effect {kind}; /v1/catalogue names those that there are")
-    if kind == "second_variable":
-        raise UnprocessableError.at(pointer, f"{effect.title}: experiments carry no quantity logged beside the others")
+    if kind == "second_variable" and not common_quantities(experiments):
+        raise UnprocessableError.at(
+            pointer,
+            f"{effect.title}: there is no quantity that was logged in all of these experiments in one unit; state it"
+            " among their loggedQuantities",
+        )
     if effect.needs_records and not all(periodic(experiment) for experiment, _ in experiments):
         raise UnprocessableError.at(
             pointer,
             f"{effect.title} shows only in records of at least {LEAST_PERIODS} periods, and some of the experiments"
             " are frequency responses or not periodic; bring in the records, or ask for effects that act linearly",
         )
+
+
+def common_quantities(experiments: Sequence[Measured]) -> list[str]:
+    """The logged quantities, with their units, that all experiments state."""
+    return sorted(set.intersection(*(set(logged_values(experiment)) for experiment, _ in experiments)))
+
+
+def chosen_quantity(kind: str, asked: str | None, experiments: Sequence[Measured]) -> str | None:
+    """The logged quantity that a second variable is; raises UnprocessableError when it is not clear which."""
+    if kind != "second_variable":
+        if asked is not None:
+            raise UnprocessableError.at("/quantity", f"{kind} depends on no logged quantity; leave it out")
+        return None
+    known = common_quantities(experiments)
+    fitting = known if asked is None else [one for one in known if asked in (one, one.rpartition(" [")[0])]
+    if len(fitting) != 1:
+        raise UnprocessableError.at("/quantity", f"name one of the logged quantities: {', '.join(known)}")
+    return fitting[0]
+
+
+def check_logged(model: Model, experiments: Sequence[Measured], pointer: str) -> None:
+    """Raises UnprocessableError at the experiment that does not state a quantity on which the model depends."""
+    needed = {one.quantity for one in model.effects if one.quantity is not None}
+    for i, (experiment, _) in enumerate(experiments):
+        missing = sorted(needed - set(logged_values(experiment)))
+        if missing:
+            raise UnprocessableError.at(
+                f"{pointer}/{i}",
+                f"the model depends on {', '.join(missing)}, which the experiment does not state in this unit; bring it"
+                " in with loggedQuantities",
+            )

@@ -259,6 +259,47 @@ def test_frequency_responses_alone(api: Api, plant: Json, stated: Json) -> None:
     assert grown["extension"]["after"]["heldOut"] < 0.5 * grown["extension"]["before"]["heldOut"]
 
 
+def warm(points: list[float], temperatures: list[float]) -> list[Json]:
+    """Frequency responses of the plant, whose stiffness grows by 0.4 a kelvin, with what was logged."""
+    bodies = responses(points, delay=0.0)
+    for body, p, t in zip(bodies, points, temperatures, strict=True):
+        omega = np.array(body["frequenciesRadPerSecond"])
+        known = 64.0 + 28.0 * p - omega**2 + 1.8j * omega
+        measured = (np.array(body["response"]["re"]) + 1j * np.array(body["response"]["im"])) * known
+        measured = measured / (known + 0.4 * (t - 300.0))
+        body["response"] = {"re": measured.real.tolist(), "im": measured.imag.tolist()}
+        body["loggedQuantities"] = [
+            {"name": "temperature", "unit": "K", "value": t},
+            {"name": "humidity", "value": 0.5 + 0.3 * np.cos(9 * t)},
+        ]
+    return bodies
+
+
+def test_a_logged_quantity_on_which_the_plant_depends(api: Api, plant: Json, stated: Json) -> None:
+    bodies = warm([-1.0, -0.5, 0.0, 0.5, 1.0, -0.2, 0.7], [300.0, 310.0, 296.0, 305.0, 299.0, 308.0, 294.0])
+    measured = [api.made("/experiments", {"plantId": plant["id"], **body})["id"] for body in bodies]
+    kept = api.get(f"/experiments/{measured[1]}")["loggedQuantities"]
+    assert kept == [{"unit": "", **one} for one in bodies[1]["loggedQuantities"]]
+    fitted, held_out = measured[:5], measured[5:]
+    found = api.made("/diagnoses", {"modelId": stated["id"], "experimentIds": fitted})
+    first = found["ranking"][0]
+    assert (first["kind"], first["quantity"]) == ("second_variable", "temperature [K]")
+    assert {one["quantity"] for one in found["visibility"] if one["kind"] == "second_variable"} == {
+        "temperature [K]",
+        "humidity",
+    }
+    assert next(one for one in found["visibility"] if one["kind"] == "rate_dependence")["status"] == "invisible"
+    body = {"effect": "second_variable", "quantity": "temperature", "experimentIds": fitted}
+    grown = api.made(f"/models/{stated['id']}/extensions", {**body, "heldOutExperimentIds": held_out})
+    (effect,) = grown["effects"]
+    assert effect["quantity"] == "temperature [K]"
+    deviation = effect["standardDeviations"][0][0]
+    assert abs(effect["coefficients"][0][0] - 0.4) < 4 * deviation < 0.1
+    assert grown["extension"]["after"]["heldOut"] < 0.3 * grown["extension"]["before"]["heldOut"]
+    compared = api.made("/comparisons", {"modelId": grown["id"], "experimentIds": measured})
+    assert all(part["lackOfFit"]["pValue"] > 1e-3 for part in compared["parts"])
+
+
 def test_variances_of_too_few_degrees_of_freedom_are_a_problem_of_the_job(api: Api, plant: Json, stated: Json) -> None:
     body = {"plantId": plant["id"], **responses([0.0], delay=0.0, freedom=2.0)[0]}
     experiment = api.made("/experiments", body)["id"]

@@ -1,6 +1,7 @@
 """Requests of comparisons, diagnoses and extensions that cannot be answered: refused at the field that is wrong."""
 
 import copy
+import json
 from dataclasses import dataclass
 from typing import Any
 
@@ -37,7 +38,12 @@ class Bench:
         return made
 
     def experiment(
-        self, plant: str, kind: str = "timeRecord", periods: int | None = 4, step: float | None = 0.05
+        self,
+        plant: str,
+        kind: str = "timeRecord",
+        periods: int | None = 4,
+        step: float | None = 0.05,
+        logged: tuple[tuple[str, str], ...] = (),
     ) -> str:
         document = {
             "plantId": plant,
@@ -48,6 +54,7 @@ class Bench:
             "varianceKnown": False,
             "varianceDegreesOfFreedom": None,
             "source": "json",
+            "loggedQuantities": [{"name": name, "unit": unit, "value": 1.0} for name, unit in logged],
             "understood": {"frequencyCount": 3, "periods": periods, "warnings": []},
         }
         return self.container.resources.add("experiments", document, plant).id
@@ -137,6 +144,61 @@ def test_effects_that_are_unknown_or_cannot_be_judged_are_refused(bench: Bench, 
     assert bench.refused("/v1/diagnoses", {**body, "effects": []}) == ["/effects"]
     ids = {"experimentIds": body["experimentIds"]}
     assert bench.refused(f"/v1/models/{known}/extensions", {**ids, "effect": "magic"}) == ["/effect"]
+
+
+def test_logged_quantities_are_those_of_all_experiments_in_one_unit(bench: Bench, plant: str, known: str) -> None:
+    warm, both = (("temperature", "K"),), (("temperature", "K"), ("humidity", "1"))
+    k, celsius = bench.experiment(plant, logged=warm), bench.experiment(plant, logged=(("temperature", "°C"),))
+    k2, k3 = bench.experiment(plant, logged=both), bench.experiment(plant, logged=both)
+    asked = {"modelId": known, "effects": ["second_variable"]}
+    for others in ([k, celsius], [k, bench.experiment(plant)]):
+        assert bench.refused("/v1/diagnoses", {**asked, "experimentIds": others}) == ["/effects/0"]
+    path = f"/v1/models/{known}/extensions"
+    for chosen in ({}, {"quantity": "pressure"}):
+        body = {"effect": "second_variable", "experimentIds": [k2, k3], **chosen}
+        assert bench.refused(path, body) == ["/quantity"]
+    body = {"effect": "delay", "experimentIds": [k2], "quantity": "humidity"}
+    assert bench.refused(path, body) == ["/quantity"]
+    for accepted in ({"experimentIds": [k, k2]}, {"experimentIds": [k2, k3], "quantity": "humidity"}):
+        answer = bench.client.post(path, json={"effect": "second_variable", **accepted})
+        assert answer.status_code == 202, answer.text
+
+
+def test_a_model_of_a_logged_quantity_is_held_against_experiments_that_state_it(bench: Bench, plant: str) -> None:
+    row = bench.container.resources.get("models", bench.model(plant)["id"])
+    effect = {"kind": "second_variable", "title": "", "place": "", "unit": "", "amplitudeDegree": 0}
+    effect |= {"coefficients": [[1.0]], "standardDeviations": None, "parameters": [], "quantity": "temperature [K]"}
+    document = {**copy.deepcopy(row.document), "effects": [effect]}
+    model = bench.container.resources.add("models", document, plant).id
+    right = bench.experiment(plant, logged=(("temperature", "K"),))
+    wrong = bench.experiment(plant, logged=(("temperature", "°C"),))
+    both = {"modelId": model, "experimentIds": [right, wrong]}
+    assert bench.refused("/v1/comparisons", both) == ["/experimentIds/1"]
+    assert bench.refused("/v1/diagnoses", both) == ["/experimentIds/1"]
+    body = {"effect": "delay", "experimentIds": [right], "heldOutExperimentIds": [wrong]}
+    assert bench.refused(f"/v1/models/{model}/extensions", body) == ["/heldOutExperimentIds/0"]
+
+
+@pytest.mark.parametrize(
+    ("logged", "where"),
+    [
+        ([{"name": "t", "value": 1.0}, {"name": "t", "value": 2.0}], "/loggedQuantities"),
+        ([{"name": "", "value": 1.0}], "/loggedQuantities/0/name"),
+        ([{"name": "t", "value": "warm"}], "/loggedQuantities/0/value"),
+        ([{"name": "t"}], "/loggedQuantities/0/value"),
+        ("[", "/loggedQuantities"),
+        ({"name": "t", "value": 1.0}, "/loggedQuantities"),
+    ],
+)
+def test_logged_quantities_are_named_once_and_have_a_value(bench: Bench, plant: str, logged: Any, where: str) -> None:
+    record = {"sampleTimeSeconds": 0.05, "input": [0.0, 1.0, 0.0], "output": [0.0, 1.0, 0.0]}
+    body = {"plantId": plant, "kind": "timeRecord", "operatingPoint": [0.0], **record, "loggedQuantities": logged}
+    assert [one.removeprefix("/timeRecord") for one in bench.refused("/v1/experiments", body)] == [where]
+    form = {"plantId": plant, "operatingPoint": "0.0"}
+    form["loggedQuantities"] = logged if isinstance(logged, str) else json.dumps(logged)
+    answer = bench.client.post("/v1/experiments/files", data=form, files={"file": ("a.csv", b"time,input,output\n")})
+    assert answer.status_code == 422
+    assert pointers(answer.json()) == [where]
 
 
 def test_a_diagnosis_needs_one_source(bench: Bench, plant: str, known: str) -> None:

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from app import __version__
 from app.conversion.comparisons import compared_experiments, map_arrays, part_document
 from app.conversion.effects import extended_model
-from app.conversion.experiments import kept_measurements
+from app.conversion.experiments import kept_batches
 from app.conversion.extremes import within_doubles
 from app.conversion.fields import field_named
 from app.jobs.task import TaskContext, TaskResult
@@ -18,7 +18,6 @@ from app.schemas.models import Model
 from app.schemas.plants import Plant
 from identification.comparison.batch import Batch
 from identification.comparison.compare import Comparison, compare
-from identification.comparison.gather import gather
 
 KIND = "comparison"
 FIELDS = {"model": "/modelId", "effects": "/modelId"}
@@ -55,6 +54,6 @@ def _compared(
 ) -> tuple[Comparison, tuple[Batch, ...]]:
     model = extended_model(Model.model_validate(payload["model"]), Plant.model_validate(payload["plant"]))
     with field_named(FIELDS, "/experimentIds"), within_doubles():
-        measured = kept_measurements([payload["experiments"][i] for i in places], context.arrays)
-        batches = gather(measured, payload["request"]["meanValue"])
+        given = [payload["experiments"][i] for i in places]
+        batches = kept_batches(given, context.arrays, payload["request"]["meanValue"])
         return compare(model, batches, fitted=data == "fitted"), batches

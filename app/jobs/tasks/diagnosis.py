@@ -5,7 +5,7 @@ from typing import Any
 from app import __version__
 from app.conversion.diagnoses import findings
 from app.conversion.effects import effect_of, extended_model
-from app.conversion.experiments import kept_measurements
+from app.conversion.experiments import kept_batches
 from app.conversion.extremes import within_doubles
 from app.conversion.fields import field_named
 from app.jobs.task import TaskContext, TaskResult
@@ -13,7 +13,6 @@ from app.schemas.diagnoses import DiagnosisRequest
 from app.schemas.experiments import Experiment
 from app.schemas.models import Model
 from app.schemas.plants import Plant
-from identification.comparison.gather import gather
 from identification.diagnosis.diagnose import diagnose
 from identification.effects.library import library
 from identification.places.place import Effect
@@ -30,7 +29,7 @@ def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
     model = extended_model(Model.model_validate(payload["model"]), Plant.model_validate(payload["plant"]))
     with field_named(FIELDS, payload["pointer"]), within_doubles():
         context.progress(0.1, "the spectra of the experiments")
-        batches = gather(kept_measurements(payload["experiments"], context.arrays), request.mean_value)
+        batches = kept_batches(payload["experiments"], context.arrays, request.mean_value)
         context.progress(0.3, "what each effect would change")
         found = diagnose(model, batches, _effects(request), request.amplitude_degree, request.seed)
         document = findings(found, experiments)

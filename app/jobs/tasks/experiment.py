@@ -24,7 +24,7 @@ from identification.varying.records import VaryingRecord
 
 KIND = "experiment"
 SIGNALS = {"input": "/inputs", "output": "/outputs", "scheduling": "/scheduling"}
-KEPT = {"plantId", "name", "description", "operatingPoint", "designId"}
+KEPT = {"plantId", "name", "description", "operatingPoint", "designId", "loggedQuantities"}
 
 
 def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:

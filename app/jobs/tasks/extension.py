@@ -7,7 +7,7 @@ import numpy as np
 
 from app import __version__
 from app.conversion.effects import effect_of, extended_model
-from app.conversion.experiments import kept_measurements
+from app.conversion.experiments import kept_batches
 from app.conversion.extensions import extended_documents
 from app.conversion.extremes import require_finite, within_doubles
 from app.conversion.fields import field_named
@@ -17,12 +17,12 @@ from app.schemas.extensions import ExtensionRequest
 from app.schemas.models import ErrorsDocument, ExtensionReport, Model
 from app.schemas.plants import Plant
 from identification.comparison.batch import Batch
-from identification.comparison.gather import gather
 from identification.diagnosis.diagnose import misfit, rows_of
 from identification.diagnosis.evidence import refit_short_list
 from identification.diagnosis.scores import score_tests
 from identification.diagnosis.signatures import candidates
 from identification.diagnosis.staircase import relative_error
+from identification.effects.second_variable import SecondVariable, with_logged
 from identification.errors import MisuseError
 from identification.extension.fit import Fit, fit
 from identification.extension.model import require_matching
@@ -40,14 +40,14 @@ def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
     model = extended_model(parent, Plant.model_validate(payload["plant"]))
     with field_named({}, "/heldOutExperimentIds"), within_doubles():
         given = payload["heldOut"]
-        held_out = gather(kept_measurements(given, context.arrays), request.mean_value) if given else ()
+        held_out = kept_batches(given, context.arrays, request.mean_value) if given else ()
         require_matching(model.base, held_out)
     with field_named(FIELDS, "/experimentIds"), within_doubles():
-        batches = gather(kept_measurements(payload["experiments"], context.arrays), request.mean_value)
+        batches = kept_batches(payload["experiments"], context.arrays, request.mean_value)
         context.progress(0.2, "the model without the effect")
         base = fit(model, rows_of(model, batches))
         context.progress(0.4, "the model with the effect")
-        grown = _grown(base, _effect(request), request)
+        grown = _grown(base, _effect(request, payload["quantity"], batches), request)
         require_finite(grown.model.base)
         report = ExtensionReport(
             diagnosis_id=request.diagnosis_id,
@@ -59,10 +59,11 @@ def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
     return TaskResult({**_traced(payload, parent, request), **document, **_outcome(grown, report)})
 
 
-def _effect(request: ExtensionRequest) -> Effect:
+def _effect(request: ExtensionRequest, quantity: str | None, batches: Sequence[Batch]) -> Effect:
     effect = effect_of(request.effect)
     assert effect is not None, "checked when the job was submitted"
-    return effect
+    of_quantities = with_logged([effect], batches)
+    return next((one for one in of_quantities if isinstance(one, SecondVariable) and one.quantity == quantity), effect)
 
 
 def _grown(base: Fit, effect: Effect, request: ExtensionRequest) -> Fit:
