@@ -1,14 +1,29 @@
-// The list of plants.
+// The list of plants, and an example in one click.
 
-import { list } from "../js/api.js";
+import { get, list } from "../js/api.js";
 import { byId, h, message, replace } from "../js/dom.js";
+import { runJob } from "../js/jobs.js";
 import { counted, moment } from "../js/numbers.js";
+import { showProblem } from "../js/problems.js";
 import { page } from "../js/ready.js";
 
 page(async () => {
   const plants = await list("/plants");
   replace(byId("plants"), plants.length ? h("ul", { class: "cards" }, plants.map(card)) : message("", "There is no plant yet."));
+  byId("example").addEventListener("click", (event) => makeExample(event.target));
 });
+
+async function makeExample(button) {
+  button.disabled = true;
+  try {
+    const seed = crypto.getRandomValues(new Uint32Array(1))[0];
+    const { href } = await runJob("/examples", { hiddenEffect: byId("hidden").value, seed }, byId("example-job"));
+    location.href = `/plants/${(await get(href)).plantId}`;
+  } catch (problem) {
+    showProblem(problem, { place: byId("example-job") });
+    button.disabled = false;
+  }
+}
 
 function card(plant) {
   const variables = plant.schedulingVariables.map((one) => one.name).join(", ");

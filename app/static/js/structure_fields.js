@@ -1,0 +1,56 @@
+// The model structure: orders of a rational model in discrete or continuous time.
+
+import { h, replace } from "./dom.js";
+import { checkbox, field, fields, integerInput, numberInput, numberOf, select } from "./forms.js";
+
+const ORDERS = {
+  discrete: [
+    ["na", "poles", "na: order of A = 1 + a1 q + …, q the delay by one sample", 2],
+    ["nb", "order of the numerator", "nb: b0 + b1 q + … + b_nb q^nb", 1],
+    ["nk", "samples of delay", "nk: 1 when the output answers one sample later", 1],
+    ["nc", "order of the noise's numerator", "nc: of C in y = (B/A) u + (C/D) e", 0],
+    ["nd", "order of the noise's denominator", "nd: of D; 0 for white noise", 0],
+  ],
+  continuous: [
+    ["na", "poles", "na: order of A = x^na + a1 x^(na−1) + …, x = jω over the scale", 2],
+    ["nb", "order of the numerator", "nb: b0 x^nb + … + b_nb", 0],
+  ],
+};
+
+// {element, value(), coefficients()}; `onChange` when anything has changed.
+export function structureFields(onChange) {
+  const domain = select([["continuous", "continuous time"], ["discrete", "discrete time"]], "continuous");
+  const place = h("div", { class: "fields wide" });
+  let inputs = {};
+  const draw = () => {
+    const orders = ORDERS[domain.value].map(([name, label, hint, start]) => [name, label, hint, integerInput(start, { min: 0 })]);
+    const scale = domain.value === "discrete"
+      ? ["sampleTimeSeconds", "sample time (s)", "of the records and of the model", numberInput(1, { min: 0 })]
+      : ["frequencyScaleRadPerSecond", "frequency scale (rad/s)", "a frequency in the middle of the data; coefficients are scaled by it", numberInput(1, { min: 0 })];
+    const delay = ["delay", "estimate a delay", "a further coefficient tau, in seconds", checkbox()];
+    const all = [...orders, scale, delay];
+    inputs = Object.fromEntries(all.map(([name, , , input]) => [name, input]));
+    replace(place, all.map(([name, label, hint, input]) => field(label, input, { hint, pointer: `/structure/${name}` })));
+  };
+  domain.addEventListener("change", draw);
+  draw();
+  const read = (input) => (input.type === "checkbox" ? input.checked : numberOf(input));
+  const value = () => ({ timeDomain: domain.value, ...Object.fromEntries(Object.entries(inputs).map(([name, input]) => [name, read(input)])) });
+  const element = h("div", { onchange: onChange, oninput: onChange }, fields(field("time", domain, { pointer: "/structure/timeDomain" })), place);
+  return { element, value, coefficients: () => coefficientNames(value()) };
+}
+
+// The names of the coefficients in their order.
+export function coefficientNames({ na, nb, nc = 0, nd = 0, delay }) {
+  const numbered = (letter, first, last) => Array.from({ length: Math.max(last - first + 1, 0) }, (_, i) => `${letter}${first + i}`);
+  return [...numbered("a", 1, na), ...numbered("b", 0, nb), ...(delay ? ["tau"] : []), ...numbered("c", 1, nc), ...numbered("d", 1, nd)];
+}
+
+// A structure in a few words.
+export function structureText(structure) {
+  const { timeDomain, na, nb, nk, nc, nd, order } = structure;
+  if (timeDomain.endsWith("StateSpace")) return `state space, ${order ? `${order} states` : "order to be chosen"}, ${timeDomain.replace("StateSpace", "")} time`;
+  const noise = nc || nd ? `, noise of orders ${nc} and ${nd}` : "";
+  const delay = (nk ? `, ${nk} samples of delay` : "") + (structure.delay ? ", delay estimated" : "");
+  return `${timeDomain} time, ${na} ${na === 1 ? "pole" : "poles"}, numerator of order ${nb}${delay}${noise}`;
+}
