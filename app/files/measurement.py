@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.files import csv_file, mat_file, npz_file
-from app.files.table import FileError, Table
+from app.files.column_choice import Members, renamed
+from app.files.table import FileError, Table, may_be_read, named
 from identification.arrays import ComplexArray, FloatArray
 from identification.signals import FrequencyResponse, Measurement, OperatingPoint, TimeRecord
 
@@ -19,21 +20,33 @@ SHORTEST, LONGEST = 1e-15, 1e15  # sample times in seconds
 
 @dataclass(frozen=True)
 class Statements:
-    """What is stated beside the file, which goes before what the file says; `channels`: the plant's outputs, inputs."""
+    """What is stated beside the file, which goes before what the file says.
+
+    `channels`: the plant's outputs and inputs; `columns`: statements such as input=force.
+    """
 
     operating_point: OperatingPoint
     sample_time: float | None = None
     period: int | None = None
     group: str = ""
     channels: tuple[int, int] = (1, 1)
+    columns: tuple[str, ...] = ()
 
 
 def read_measurement(content: bytes, file_format: str, stated: Statements) -> Measurement:
     """The measurement in a file of format csv, npz or mat; raises MisuseError."""
+
+    def understand(members: Members) -> Table:
+        return named(renamed(members, stated.columns))
+
+    def understand_readable(members: Members) -> Table:
+        chosen = renamed(members, stated.columns)
+        return named({name: array for name, array in chosen.items() if may_be_read(name, array)})
+
     readers: dict[str, Callable[[], Table]] = {
-        "csv": lambda: csv_file.read(content),
-        "npz": lambda: npz_file.read(content),
-        "mat": lambda: mat_file.read(content, stated.group),
+        "csv": lambda: csv_file.read(content, understand),
+        "npz": lambda: npz_file.read(content, understand),
+        "mat": lambda: mat_file.read(content, stated.group, understand_readable),
     }
     return measurement(readers[file_format](), stated)
 

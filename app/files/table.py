@@ -45,8 +45,13 @@ class FileError(MisuseError):
 
 def may_be_read(name: str, array: NDArray[Any]) -> bool:
     """Whether an array is a vector, or the matrices or table of something that may have several channels."""
-    several = _MEANING.get(plain(name)) in MATRICES and array.ndim <= 3
+    several = meaning_of(name) in MATRICES and array.ndim <= 3
     return several or array.size == max(array.shape)
+
+
+def meaning_of(name: str) -> str | None:
+    """What a column or array of this name means; None when it is not understood."""
+    return _MEANING.get(plain(name))
 
 
 def plain(name: str) -> str:

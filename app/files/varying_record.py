@@ -3,13 +3,13 @@
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from app.files import csv_file, mat_file, npz_file
+from app.files.column_choice import Members, renamed
 from app.files.measurement import Statements, record_period, record_sample_time
 from app.files.table import FileError, Table, named, numbers, plain
 from identification.arrays import FloatArray
@@ -22,18 +22,25 @@ _CHANNEL = re.compile(r"(u|inputs?|y|outputs?|p|scheduling)([1-9]\d?)?")
 
 @dataclass(frozen=True)
 class VaryingStatements:
-    """What is stated beside the file; `columns` that hold the scheduling signals, None to find them by their names."""
+    """What is stated beside the file; `columns` that hold the scheduling signals, None to find them by their names.
+
+    `choices`: statements such as input=force about the other columns.
+    """
 
     variables: tuple[SchedulingVariable, ...]
     sample_time: float | None = None
     period: int | None = None
     group: str = ""
     columns: tuple[str, ...] | None = None
+    choices: tuple[str, ...] = ()
 
 
 def read_varying(content: bytes, file_format: str, stated: VaryingStatements) -> VaryingRecord:
     """The record in a file of format csv, npz or mat; raises MisuseError."""
-    understand = partial(varying_table, stated=stated)
+
+    def understand(members: Members) -> Table:
+        return varying_table(renamed(members, stated.choices), stated)
+
     readers: dict[str, Callable[[], Table]] = {
         "csv": lambda: csv_file.read(content, understand),
         "npz": lambda: npz_file.read(content, understand),

@@ -60,12 +60,13 @@ def upload_experiment(
     group: Annotated[
         str, Form(alias="variableGroup", description="structure of a mat file that holds the arrays, e.g. data.run1")
     ] = "",
+    columns: Annotated[list[str] | None, Form(description="which column or array is what, e.g. input=force")] = None,
     logged: Annotated[
         str, Form(alias="loggedQuantities", description='quantities written down, as JSON: [{"name", "unit", "value"}]')
     ] = "[]",
     key: IdempotencyKey = None,
 ) -> Job:
-    """Bring in a file; its columns or arrays are found by their names.
+    """Bring in a file; its columns or arrays are found by their names, or as `columns` say.
 
     A time record has input, output and time (or state sampleTimeSeconds). A frequency response has
     frequenciesRadPerSecond (or frequencyHz), response (or responseRe and responseIm) and, where known, variance.
@@ -83,6 +84,7 @@ def upload_experiment(
             "sampleTimeSeconds": sample_time,
             "periodSamples": period,
             "variableGroup": group,
+            "columns": columns or [],
             "loggedQuantities": _json(logged),
         }
     )

@@ -5,11 +5,13 @@ from typing import Annotated, Literal
 from pydantic import AfterValidator, Field, RootModel, field_validator
 
 from app.arrays import ComplexMatrices, ComplexVector, Matrices, matrices_shape
+from app.files.column_choice import CHOICES
 from app.schemas.common import CamelModel, Double, Integer, Timestamp
 from app.schemas.plants import LongText, Name, OperatingPoint, Positive, SampleTime, Text
 
 Identifier = Annotated[str, Field(min_length=1, max_length=64)]
 Values = list[Double]
+ColumnChoice = Annotated[str, Field(pattern=f"^({'|'.join(CHOICES)})=.{{1,200}}$")]
 ExperimentKind = Literal["timeRecord", "frequencyResponse", "matrixFrequencyResponse", "varyingRecord"]
 
 
@@ -143,6 +145,10 @@ class FileFields(ExperimentFields):
     period_samples: Annotated[Integer, Field(ge=2)] | None = Field(default=None, description="samples in one period")
     variable_group: Text = Field(
         default="", description="structure of a mat file that holds the arrays, e.g. data.run1"
+    )
+    columns: Annotated[list[ColumnChoice], Field(max_length=len(CHOICES))] = Field(
+        default_factory=list,
+        description="which column or array is what, e.g. input=force; found by names where not said",
     )
 
 

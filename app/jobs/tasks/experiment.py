@@ -88,7 +88,12 @@ def _along(payload: dict[str, Any], arrays: dict[str, Any], context: TaskContext
 def _varying_from_file(source: str, stated: FileFields, content: bytes, plant: Plant) -> VaryingRecord:
     columns = None if stated.scheduling_columns is None else tuple(stated.scheduling_columns)
     given = VaryingStatements(
-        scheduling_variables(plant), stated.sample_time_seconds, stated.period_samples, stated.variable_group, columns
+        scheduling_variables(plant),
+        stated.sample_time_seconds,
+        stated.period_samples,
+        stated.variable_group,
+        columns,
+        tuple(stated.columns),
     )
     fields = dict.fromkeys(("input", "output", "scheduling"), "/file")
     with field_named({**fields, "period": "/periodSamples", "sample_time": "/sampleTimeSeconds"}):
@@ -122,6 +127,7 @@ def _from_file(source: str, stated: FileFields, content: bytes, channels: tuple[
             stated.period_samples,
             stated.variable_group,
             channels,
+            tuple(stated.columns),
         ),
     )
     if isinstance(data, FrequencyResponse):

@@ -30,6 +30,31 @@ def matlab(compressed: bool, **arrays: object) -> bytes:
 
 
 @pytest.mark.parametrize("kind", WRITERS)
+def test_what_columns_are_can_be_said(kind: str) -> None:
+    given = {"t": ARRAYS["time"], "force": ARRAYS["input"], "u": ARRAYS["time"], "way": ARRAYS["output"]}
+    stated = Statements((1.0,), columns=("input=force", "output=way"))
+    record = read_measurement(WRITERS[kind](given), kind, stated)
+    assert isinstance(record, TimeRecord)
+    np.testing.assert_array_equal(record.input, ARRAYS["input"])
+    np.testing.assert_array_equal(record.output, ARRAYS["output"])
+    assert record.sample_time == 1.0
+
+
+@pytest.mark.parametrize(
+    ("columns", "message"),
+    [
+        (("input=power",), "no column or array 'power'; it has time, input, output"),
+        (("input=time", "output=time"), "named once"),
+        (("input=time", "input=output"), "named once"),
+    ],
+)
+def test_columns_that_are_not_there_are_refused(columns: tuple[str, ...], message: str) -> None:
+    with pytest.raises(MisuseError, match=message) as refused:
+        read_measurement(csv_file.write(ARRAYS), "csv", Statements((1.0,), columns=columns))
+    assert refused.value.field == "/columns"
+
+
+@pytest.mark.parametrize("kind", WRITERS)
 def test_a_record_comes_back_exactly(kind: str) -> None:
     record = read_measurement(WRITERS[kind](ARRAYS), kind, POINT)
     assert isinstance(record, TimeRecord)
