@@ -26,6 +26,7 @@ class Hidden:
     actuate: Callable | None = None
     sense: Callable | None = None
     change: Callable | None = None
+    mode: Callable | None = None
 
     def actuator(self, u, e, done):
         """The input on the half-step grid as the plant sees it."""
@@ -33,11 +34,20 @@ class Hidden:
 
     def output(self, y, e, done, inputs):
         """The output at the samples as the sensor shows it."""
+        if self.mode is not None:
+            y = y + e * driven(self.mode, inputs, y.shape[1])
         return y if self.sense is None else self.sense(y, e, done)
 
     def coefficients(self, k, c, b, e, p):
         """Stiffness, damping and gain as they really are."""
         return (k, c, b) if self.change is None else self.change(k, c, b, e, p)
+
+
+def driven(response, inputs, samples):
+    """The steady answer at the samples of a mode that is driven by what the actuator passes on."""
+    lines = np.arange(inputs.shape[1] // 2 + 1)
+    spectrum = np.fft.rfft(inputs) * response(2 * np.pi * lines / DURATION)
+    return np.fft.irfft(spectrum, n=inputs.shape[1])[:, :: inputs.shape[1] // samples]
 
 
 def linear_path(response):
@@ -112,7 +122,7 @@ HIDDEN = {
     "delay": Hidden(0.01, actuate=linear_filter(lambda w, e: np.exp(-1j * w * e))),
     "lag": Hidden(0.01, actuate=linear_filter(lambda w, e: 1 / (1 + 1j * w * e))),
     "lead": Hidden(0.01, actuate=linear_filter(lambda w, e: 1 + 1j * w * e)),
-    "resonance": Hidden(0.05, sense=linear_path(lambda w: 1 / (14.0**2 - w**2 + 0.1j * 14.0 * w))),
+    "resonance": Hidden(0.05, mode=lambda w: 1 / (14.0**2 - w**2 + 0.1j * 14.0 * w)),
     "antiresonance": Hidden(
         0.2, actuate=linear_filter(lambda w, e: 1 - e * 0.3j * 7.0 * w / (49.0 - w**2 + 0.3j * 7.0 * w))
     ),
