@@ -1,8 +1,9 @@
 """Battery impedance over the state of charge: python -m benchmarks.battery FOLDER (where imiev_15C_eis.csv is).
 
-Fits local models of growing order to 13 measured impedance spectra and a parameter-varying model over all of them.
-Prints a table, and the same as JSON with --json FILE. Relative error: root mean square over the frequencies of
-|Z − Ẑ|/|Z|.
+Fits local models of growing order to 13 measured impedance spectra and a parameter-varying model over all of them;
+then asks the diagnosis what a resistor with one RC arc lacks, at half charge and over all states of charge. Prints
+tables, and the same as JSON with --json FILE, as HTML page with --picture FILE. Relative error: root mean square over
+the frequencies of |Z − Ẑ|/|Z|.
 """
 
 import argparse
@@ -13,12 +14,18 @@ from typing import Any
 
 import numpy as np
 
+from app.report.style import colour, new_figure
 from identification.bases.chebyshev import Chebyshev
+from identification.bases.polynomial import Polynomial
+from identification.comparison.gather import gather
+from identification.diagnosis.staircase import Step, staircase
+from identification.effects.library import library
 from identification.estimates import LocalEstimate, LpvEstimate
+from identification.extension.model import ExtendedModel
 from identification.lpv.generalised_least_squares import GeneralisedLeastSquares
 from identification.lpv.joint_likelihood import JointLikelihood
 from identification.lti.rational_fit import RationalFit, relative_error
-from identification.models import LocalModel, RationalStructure
+from identification.models import LocalModel, LpvModel, RationalStructure
 from identification.scheduling import ParameterDependence, ProductBasis, SchedulingVariable
 from identification.signals import FrequencyResponse
 
@@ -32,6 +39,7 @@ STRUCTURES = {
 CHARGE = SchedulingVariable("state of charge", "%", 5.0, 95.0)
 FIT = RationalFit(weighting="relative", relaxation=True)
 JOINT = JointLikelihood(unknown_variance="relative")
+ONE_ARC = RationalStructure(1, 1, frequency_scale=10.0)
 
 
 def read(folder: Path) -> list[FrequencyResponse]:
@@ -94,6 +102,63 @@ def study(data: list[FrequencyResponse], degree: int) -> list[dict[str, Any]]:
     return rows
 
 
+def circuit(data: list[FrequencyResponse], degree: int) -> ExtendedModel:
+    """A resistor and one RC arc, polynomials in the state of charge through the local fits."""
+    local = [FIT.estimate(ONE_ARC, one).model.zeta for one in data]
+    how = ParameterDependence((CHARGE,), (ProductBasis((Polynomial(degree),)),) * ONE_ARC.size)
+    stacked = how.matrix([one.operating_point for one in data]).reshape(-1, how.size)
+    theta = np.linalg.lstsq(stacked, np.concatenate(local), rcond=None)[0]
+    return ExtendedModel(LpvModel(ONE_ARC, how, theta, np.eye(how.size), 1.0))
+
+
+def story(data: list[FrequencyResponse], degree: int, amplitude_degree: int, effects: int = 3) -> tuple[Step, ...]:
+    """What the diagnosis adds to a resistor with one RC arc; `amplitude_degree` of the amplitudes in p."""
+    arcs = library("impedance")
+    return staircase(circuit(data, degree), gather(data), effects=arcs, degree=amplitude_degree, largest=effects)
+
+
+def told(name: str, steps: tuple[Step, ...]) -> dict[str, Any]:
+    """The staircase as plain values; coefficients of amplitudes over the scaled state of charge."""
+    return {
+        "data": name,
+        "errors": [step.error for step in steps],
+        "announced": [[one.score.candidate.effect.kind for one in step.diagnosis.announced] for step in steps],
+        "effects": [
+            {"kind": one.effect.kind, "amplitude": one.coefficients.ravel().tolist()} for one in steps[-1].model.effects
+        ],
+    }
+
+
+def staircases(data: list[FrequencyResponse]) -> list[dict[str, Any]]:
+    """At half charge, and jointly over all states of charge."""
+    half = [one for one in data if one.operating_point == (50.0,)]
+    return [told("50 % state of charge", story(half, 0, 0)), told("all states of charge", story(data, 4, 1))]
+
+
+def staircase_table(found: list[dict[str, Any]]) -> str:
+    """Errors in %, what was announced before each step."""
+    lines = []
+    for one in found:
+        lines.append(one["data"])
+        names = ["R + RC", *(f"+ {effect['kind']}" for effect in one["effects"])]
+        values = ["", *(", ".join(f"{value:.3e}" for value in effect["amplitude"]) for effect in one["effects"])]
+        told_alike = ["", *(", ".join(kinds) for kinds in one["announced"])]
+        for name, error, value, alike in zip(names, one["errors"], values, told_alike, strict=False):
+            note = f"   amplitude {value}, announced: {alike}" if value else ""
+            lines.append(f"  {100 * error:6.2f} %  {name:16s}{note}")
+    return "\n".join(lines)
+
+
+def picture(found: list[dict[str, Any]], path: Path) -> None:
+    """The two staircases as an HTML page."""
+    figure = new_figure([one["data"] + ": relative error, %" for one in found], height=600)
+    for row, one in enumerate(found, start=1):
+        names = ["R + RC", *(f"+ {effect['kind']}" for effect in one["effects"])]
+        percent = [100 * error for error in one["errors"]]
+        figure.add_bar(x=names, y=percent, marker={"color": colour(0)}, showlegend=False, row=row, col=1)
+    figure.write_html(path, include_plotlyjs=True)
+
+
 def table(rows: list[dict[str, Any]], charges: list[float]) -> str:
     """The rows as text, errors in %."""
     lines = [" " * 24 + "".join(f"{charge:7.0f}" for charge in charges) + "   % state of charge"]
@@ -112,12 +177,17 @@ def main() -> None:
     parser.add_argument("folder", type=Path, help="folder with imiev_15C_eis.csv")
     parser.add_argument("--degree", type=int, default=6, help="degree of the Chebyshev series")
     parser.add_argument("--json", type=Path, help="file for the figures")
+    parser.add_argument("--picture", type=Path, help="file for the staircases as HTML")
     arguments = parser.parse_args()
     data = read(arguments.folder)
     rows = study(data, arguments.degree)
     print(table(rows, [one.operating_point[0] for one in data]))
+    found = staircases(data)
+    print(staircase_table(found))
     if arguments.json:
-        arguments.json.write_text(json.dumps(rows, indent=1))
+        arguments.json.write_text(json.dumps({"structures": rows, "staircases": found}, indent=1))
+    if arguments.picture:
+        picture(found, arguments.picture)
 
 
 if __name__ == "__main__":

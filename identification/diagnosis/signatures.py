@@ -14,6 +14,8 @@ from identification.places.place import Effect
 from identification.whiteness import orthonormal
 
 INVISIBLE = 1e-4
+RECORDS = "it acts on signals, which only records of at least two periods show; these experiments are not all periodic"
+LOGGED = "no quantity was logged for every one of these experiments"
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +61,7 @@ def candidates(fit: Fit, effects: Sequence[Effect], degree: int = 0) -> tuple[Ca
 
 def _candidate(fit: Fit, effect: Effect, degree: int, space: FloatArray) -> Candidate:
     if not all(effect.judgeable(flow) for flow in fit.flows):
-        return Candidate(effect, (), why_not="these data cannot show it: it needs periodic records or logged values")
+        return Candidate(effect, (), why_not=RECORDS if effect.needs_records else LOGGED)
     variables = fit.flows[0].setting.points.shape[1]
     variants = [placed(one, degree, variables) for one in _variants(fit, effect)]
     if not variants:
