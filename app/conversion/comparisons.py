@@ -53,7 +53,10 @@ def compared_experiments(data: Data, found: Comparison, experiments: Sequence[Ex
 
 
 def map_arrays(found: Comparison, places: Sequence[int]) -> dict[str, NDArray[Any]]:
-    """Frequencies, residuals and line classes of each experiment by its place in the request; compared lines only."""
+    """Frequencies, residuals and line classes of each experiment by its place in the request; compared lines only.
+
+    And its responses, at the excited ones of them.
+    """
     arrays: dict[str, NDArray[Any]] = {}
     for one in found.maps:
         for m, member in enumerate(one.members):
@@ -61,6 +64,12 @@ def map_arrays(found: Comparison, places: Sequence[int]) -> dict[str, NDArray[An
             arrays[f"frequenciesRadPerSecond{place}"] = one.frequencies[used]
             arrays[f"residual{place}"] = one.residual[m, used]
             arrays[f"lineClass{place}"] = one.classes[m, used]
+            responses, shown = one.responses, one.responses.shown[m]
+            arrays[f"excitedRadPerSecond{place}"] = one.frequencies[shown]
+            arrays[f"measured{place}"] = responses.measured[m, shown]
+            arrays[f"modelled{place}"] = responses.modelled[m, shown]
+            if responses.deviation is not None:
+                arrays[f"deviation{place}"] = responses.deviation[m, shown]
     return arrays
 
 

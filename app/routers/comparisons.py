@@ -6,7 +6,7 @@ from fastapi import APIRouter, Query, Response
 
 from app.dependencies import ContainerDependency, Cursor, IdempotencyKey, Limit, ResourcesDependency
 from app.routers.downloads import file_answer, file_response
-from app.schemas.comparisons import Comparison, ComparisonList, ComparisonMaps, ComparisonRequest
+from app.schemas.comparisons import ComparedResponse, Comparison, ComparisonList, ComparisonMaps, ComparisonRequest
 from app.schemas.jobs import Job
 from app.services import comparisons
 from app.services.jobs import accepted
@@ -43,6 +43,12 @@ def get_comparison(comparisonId: str, resources: ResourcesDependency) -> Compari
 def get_comparison_maps(comparisonId: str, container: ContainerDependency) -> ComparisonMaps:
     """The normalised residuals over operating point and frequency."""
     return comparisons.maps(container, comparisonId)
+
+
+@router.get("/{comparisonId}/responses/{experimentId}")
+def get_compared_response(comparisonId: str, experimentId: str, container: ContainerDependency) -> ComparedResponse:
+    """The frequency response of one experiment as measured, and as the model answers to the same input."""
+    return comparisons.response(container, comparisonId, experimentId)
 
 
 @router.get("/{comparisonId}/file", response_class=Response, responses=file_answer("npz", "mat"))

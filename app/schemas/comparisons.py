@@ -111,3 +111,20 @@ class ComparisonMaps(CamelModel):
 
     comparison_id: str
     rows: list[ResidualRow]
+
+
+class ComparedResponse(CamelModel):
+    """Output over input of one experiment at its excited lines, as measured and as the model answers to this input."""
+
+    comparison_id: str
+    experiment_id: str
+    operating_point: Vector
+    data: Data
+    frequencies_rad_per_second: Vector
+    measured: ComplexVector
+    standard_deviation: Vector | None = Field(
+        description="root of the mean of |noise|² on the measured values; null where the size of the noise is not known"
+    )
+    modelled: ComplexVector = Field(
+        description="where effects act on signals this belongs to the input, and differs from the response of the model"
+    )

@@ -6,11 +6,12 @@ from numpy.typing import NDArray
 
 from app.arrays import ComplexVector
 from app.container import Container
-from app.errors import UnprocessableError
+from app.errors import NotFoundError, UnprocessableError
 from app.files.stored import Format, arrays_file
 from app.jobs.records import JobRecord
 from app.schemas.comparisons import (
     ComparedExperiment,
+    ComparedResponse,
     Comparison,
     ComparisonList,
     ComparisonMaps,
@@ -95,6 +96,27 @@ def maps(container: Container, comparison_id: str) -> ComparisonMaps:
     experiments = enumerate(comparison_of(resource).experiments)
     rows = [_row(place, experiment, arrays) for place, experiment in experiments]
     return ComparisonMaps(comparison_id=comparison_id, rows=rows)
+
+
+def response(container: Container, comparison_id: str, experiment_id: str) -> ComparedResponse:
+    """Measured and modelled response of one experiment as JSON; raises NotFoundError when it was not compared."""
+    resource = container.resources.get(KIND, comparison_id)
+    compared = comparison_of(resource).experiments
+    arrays = container.arrays.get(resource.arrays or "")
+    place = next((i for i, one in enumerate(compared) if one.experiment_id == experiment_id), None)
+    if place is None or f"measured{place}" not in arrays:
+        raise NotFoundError(f"comparison {comparison_id} holds no response of experiment {experiment_id!r}")
+    deviation = arrays.get(f"deviation{place}")
+    return ComparedResponse(
+        comparison_id=comparison_id,
+        experiment_id=experiment_id,
+        operating_point=compared[place].operating_point,
+        data=compared[place].data,
+        frequencies_rad_per_second=arrays[f"excitedRadPerSecond{place}"].tolist(),
+        measured=ComplexVector.of(arrays[f"measured{place}"]),
+        standard_deviation=None if deviation is None else deviation.tolist(),
+        modelled=ComplexVector.of(arrays[f"modelled{place}"]),
+    )
 
 
 def as_file(container: Container, comparison_id: str, file_format: Format) -> bytes:

@@ -12,6 +12,7 @@ from identification.comparison.batch import CLASS_NAMES, EXCITED, Batch
 from identification.comparison.between import strongest_line
 from identification.comparison.lack_of_fit import lack_of_fit
 from identification.comparison.noise import noise_freedom
+from identification.comparison.responses import ComparedResponses, compared_responses
 from identification.errors import MisuseError
 from identification.extension.fit import Fit, fit
 from identification.extension.model import ExtendedModel, require_matching
@@ -36,6 +37,7 @@ class MisfitMap:
     compared: BoolArray
     classes: IntArray
     members: IntArray
+    responses: ComparedResponses
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,7 +99,7 @@ def compare(model: ExtendedModel, batches: Sequence[Batch], fitted: bool = True)
     z = judge.residual
     if judge.covariance is not None:
         z = z / np.sqrt(1 + np.einsum("kr,kl,lr->r", judge.tangents, judge.covariance, judge.tangents))
-    maps = tuple(_map(batch, part) for batch, part in zip(batches, rows.parts(z), strict=True))
+    maps = tuple(_map(*one) for one in zip(batches, rows.parts(z), flows, strict=True))
     percent = _fit_percent(batches, flows)
     between = tuple(strongest_line(powers) for batch in batches for powers in batch.between)
     if not rows.scaled:
@@ -160,9 +162,10 @@ def _covariance(model: ExtendedModel) -> FloatArray:
     return np.array(found)
 
 
-def _map(batch: Batch, rows: FloatArray) -> MisfitMap:
-    compared = np.isfinite(batch.variances)
-    return MisfitMap(batch.points, batch.omega, batch.complex_residual(rows), compared, batch.classes, batch.members)
+def _map(batch: Batch, rows: FloatArray, flow: Flow) -> MisfitMap:
+    compared, residual = np.isfinite(batch.variances), batch.complex_residual(rows)
+    responses = compared_responses(batch, flow.output)
+    return MisfitMap(batch.points, batch.omega, residual, compared, batch.classes, batch.members, responses)
 
 
 def _fit_percent(batches: Sequence[Batch], flows: Sequence[Flow]) -> FloatArray:

@@ -103,6 +103,21 @@ def test_the_maps_are_those_of_the_tests(api: Api, comparison: Json) -> None:
     assert api.get("/comparisons", plantId=comparison["plantId"])["items"][0]["id"] == comparison["id"]
 
 
+def test_the_responses_are_what_the_residuals_say(api: Api, comparison: Json) -> None:
+    """(G_measured − G_modelled)/σ at the excited lines is the residual, up to the randomness of σ̂."""
+    row = api.get(f"/comparisons/{comparison['id']}/maps")["rows"][0]
+    found = api.get(f"/comparisons/{comparison['id']}/responses/{row['experimentId']}")
+    excited = [i for i, name in enumerate(row["lineClasses"]) if name == "excited"]
+    assert found["frequenciesRadPerSecond"] == [row["frequenciesRadPerSecond"][i] for i in excited]
+    measured, modelled = (np.array(found[n]["re"]) + 1j * np.array(found[n]["im"]) for n in ("measured", "modelled"))
+    ratio = abs(measured - modelled) / found["standardDeviation"]
+    residual = abs(np.array(row["residual"]["re"]) + 1j * np.array(row["residual"]["im"]))[excited]
+    assert np.median(ratio / residual) == pytest.approx(1.0, abs=0.15)
+    assert np.ptp(ratio / residual) < 1e-6
+    missing = api.http.get(f"/comparisons/{comparison['id']}/responses/elsewhere")
+    assert api.problem(missing)["status"] == 404
+
+
 @pytest.fixture(scope="module")
 def diagnosis(api: Api, comparison: Json) -> Json:
     return api.made("/diagnoses", {"comparisonId": comparison["id"], "name": "what is missing"})

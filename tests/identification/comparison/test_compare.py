@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from identification.comparison.batch import EXCITED
 from identification.comparison.compare import compare
 from identification.comparison.gather import gather
 from identification.errors import MisuseError, RangeError
@@ -59,6 +60,19 @@ def test_degrees_of_freedom_count_what_was_fitted_once():
 def test_the_map_has_unit_variance():
     values = [abs(m.residual[m.compared]) ** 2 for s in range(10) for m in compare(MODEL, batches(s)).maps]
     assert np.mean(np.concatenate(values)) == pytest.approx(1.0, abs=0.05)
+
+
+def test_the_responses_are_those_of_plant_and_model():
+    spreads = []
+    many = [batches(seed) for seed in range(10)]
+    for batch, one in [pair for data in many for pair in zip(data, compare(MODEL, data).maps, strict=True)]:
+        response, seen = MODEL.base.frequency_response(batch.points, batch.omega), one.responses
+        shown = seen.shown
+        assert shown.any(axis=1).all()
+        assert np.all(one.classes[shown] == EXCITED)
+        np.testing.assert_allclose(seen.modelled[shown], response[shown], rtol=0.05)
+        spreads.append(abs(seen.measured - seen.modelled)[shown] / seen.deviation[shown])
+    assert np.mean(np.concatenate(spreads) ** 2) == pytest.approx(1.0, abs=0.1)
 
 
 def test_a_wrong_dependence_is_not_taken_for_wrong_dynamics():
