@@ -32,6 +32,18 @@ def percent(share: float, digits: int = 3) -> str:
     return f"{significant(100 * share, digits)} %"
 
 
+def probability(value: float) -> str:
+    """A p-value; one that is too small for a number is said to be so."""
+    return "< 10⁻³⁰⁰" if value == 0 else significant(value, 2)
+
+
+def weight(share: float) -> str:
+    """A share of evidence as a percentage, next to nothing and next to all told as such."""
+    if share < 1e-3:
+        return "< 0.1 %"
+    return "> 99.9 %" if share > 1 - 1e-3 else f"{100 * share:.1f} %"
+
+
 def point_label(point: tuple[float, ...], names: tuple[str, ...], units: tuple[str, ...]) -> str:
     """An operating point in words, such as v = 1.5 m/s."""
     parts = (f"{name} = {value:g} {unit}".rstrip() for name, value, unit in zip(names, point, units, strict=True))

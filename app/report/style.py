@@ -12,6 +12,7 @@ from identification.arrays import FloatArray
 PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
 DASHES = ("solid", "dash", "dot", "dashdot", "longdash", "longdashdot")
 NEUTRAL = "#808080"
+SEQUENTIAL = "Cividis"  # made for colour-blind readers, dark to bright on light and dark pages
 CLEAR = "rgba(0,0,0,0)"
 
 

@@ -1,0 +1,110 @@
+"""What a report of the whole chain is made from: the documents of the service and the arrays they name."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.conversion.effects import extended_model
+from app.report.axes import Axes
+from app.report.figures.misfit_map import MapRow
+from app.report.figures.staircase import Step
+from app.schemas.comparisons import Comparison
+from app.schemas.designs import Design
+from app.schemas.diagnoses import Diagnosis
+from app.schemas.experiments import Experiment
+from app.schemas.models import ErrorsDocument, Model
+from app.schemas.plants import ContinuousTimeStructure, DiscreteTimeStructure, Plant
+from identification.extension.model import ExtendedModel
+from identification.scheduling import SchedulingVariable
+from identification.signals import Measurement, OperatingPoint
+
+Arrays = Mapping[str, NDArray[Any]]
+
+
+@dataclass(frozen=True, eq=False)
+class Compared:
+    """A comparison with the arrays of its map."""
+
+    document: Comparison
+    arrays: Arrays
+
+
+@dataclass(frozen=True, eq=False)
+class Chain:
+    """Versions of a model, oldest first, with what they were made from and held against.
+
+    `measurements` by the identifier of their experiment; `designs` in the order in which they were made.
+    """
+
+    plant: Plant
+    versions: tuple[Model, ...]
+    experiments: tuple[Experiment, ...] = ()
+    measurements: Mapping[str, Measurement] | None = None
+    designs: tuple[Design, ...] = ()
+    comparisons: tuple[Compared, ...] = ()
+    diagnoses: tuple[Diagnosis, ...] = ()
+
+    @property
+    def model(self) -> Model:
+        """The latest version."""
+        return self.versions[-1]
+
+    @cached_property
+    def axes(self) -> Axes:
+        """How the quantities of the plant are called."""
+        variables = tuple(
+            SchedulingVariable(v.name, v.unit, v.minimum, v.maximum) for v in self.plant.scheduling_variables
+        )
+        first, last = self.plant.input, self.plant.output
+        inputs = ("input", "") if first is None else (first.name, first.unit)
+        outputs = ("output", "") if last is None else (last.name, last.unit)
+        return Axes(variables, *inputs, *outputs)
+
+    @cached_property
+    def labels(self) -> dict[str, str]:
+        """How each experiment is called: its name, or its operating point."""
+        return {one.id: one.name or self.axes.point(tuple(one.operating_point)) for one in self.experiments}
+
+    def rational(self, model: Model) -> ExtendedModel | None:
+        """The model with its effects; None for other structures than rational ones."""
+        if not isinstance(model.structure, DiscreteTimeStructure | ContinuousTimeStructure):
+            return None
+        return extended_model(model, self.plant)
+
+    def version_name(self, model: Model) -> str:
+        """What a version has that the one before it had not."""
+        if model.effects and model.extension is not None:
+            return f"with {model.effects[-1].title}"
+        return model.name or {"stated": "stated", "identified": "identified"}.get(model.origin, model.origin)
+
+    def map_rows(self, compared: Compared) -> list[MapRow]:
+        """The rows of a comparison's map, by operating point."""
+        found = []
+        for place, one in enumerate(compared.document.experiments):
+            label = self.labels.get(one.experiment_id, self.axes.point(tuple(one.operating_point)))
+            own = (compared.arrays[f"{name}{place}"] for name in ("frequenciesRadPerSecond", "residual", "lineClass"))
+            found.append((one.operating_point, MapRow(label, one.data == "heldOut", *map(np.asarray, own))))
+        return [row for _, row in sorted(found, key=lambda pair: pair[0])]
+
+    def steps(self) -> list[Step]:
+        """The staircase of errors, from the reports of the extensions."""
+        found: list[Step] = []
+        for model in self.versions:
+            if model.extension is None:
+                continue
+            if not found:
+                found.append(_step("without effects", model.extension.before))
+            found.append(_step(self.version_name(model), model.extension.after))
+        return found
+
+    def points(self) -> list[OperatingPoint]:
+        """The distinct operating points of the experiments."""
+        return sorted({tuple(one.operating_point) for one in self.experiments})
+
+
+def _step(name: str, errors: ErrorsDocument) -> Step:
+    return Step(name, errors.fitted, errors.held_out, errors.lack_of_fit.p_value)

@@ -1,0 +1,126 @@
+"""A version of a model: its parameters, where it fails, what it lacks."""
+
+import numpy as np
+
+from app.report.chain.documents import Chain, Compared
+from app.report.document import Plot, Section, Table
+from app.report.figures.effects import amplitude, confusability, ranking, visibility
+from app.report.figures.misfit import misfit_by_band, misfit_by_class, misfit_by_point, overall_table
+from app.report.figures.misfit_map import misfit_map
+from app.report.figures.missing import missing
+from app.report.figures.poles import poles
+from app.report.figures.versions import side_by_side
+from app.report.numbers import estimate, percent, significant
+from app.schemas.diagnoses import Diagnosis
+from app.schemas.models import Model
+from identification.comparison.gather import gather
+from identification.errors import MisuseError
+
+FINE = 81
+MOST_PARAMETERS = 200
+VERDICTS = {
+    "nothingMissing": "Nothing is missing that these experiments could show.",
+    "explained": "The best effect leaves nothing but noise.",
+    "partlyExplained": "The best effect explains a part; something else is missing too.",
+    "notInTheLibrary": "Something is missing, and no effect of the library has its shape.",
+}
+
+
+def model_section(chain: Chain, number: int) -> Section:
+    """The parameters of a version with their accuracy, its effects and its poles."""
+    model = chain.versions[number]
+    text = {
+        "stated": "Its parameters were stated.",
+        "identified": f"Identified from {len(model.experiment_ids)} experiments.",
+        "extended": f"All its parameters fitted together to {len(model.experiment_ids)} experiments.",
+    }
+    blocks: list[Plot | Table] = [_parameters(model)]
+    if model.effects:
+        rows = tuple((one.title, one.place, amplitude(one)) for one in model.effects)
+        blocks.append(Table(("effect", "acts", "amplitude ± σ"), rows, text_columns=3))
+    blocks += _poles(chain, model)
+    title = f"Version {number + 1}: {chain.version_name(model)}"
+    return Section(title, (text.get(model.origin, ""),), tuple(blocks))
+
+
+def _parameters(model: Model) -> Table:
+    deviations = model.standard_deviations or [float("nan")] * len(model.theta)
+    shown = list(zip(model.parameter_names, model.theta, deviations, strict=False))[:MOST_PARAMETERS]
+    rows = tuple((name, estimate(value, sigma)) for name, value, sigma in shown)
+    return Table(("parameter", "estimate ± σ"), rows)
+
+
+def _poles(chain: Chain, model: Model) -> list[Plot]:
+    """Over one scheduling variable, where no effect changes them and their accuracy is known."""
+    known = chain.rational(model)
+    if known is None or known.effects or model.covariance is None or len(chain.axes.variables) != 1:
+        return []
+    variable = chain.axes.variables[0]
+    along = np.linspace(variable.minimum, variable.maximum, FINE)[:, None]
+    return [poles(known.base, along, chain.axes)] if known.base.structure.n_a else []
+
+
+def comparison_section(chain: Chain, compared: Compared, number: int) -> Section:
+    """Where a version fails."""
+    document = compared.document
+    blocks: list[Plot | Table] = [misfit_map(chain.map_rows(compared)), _fit_table(chain, compared)]
+    if any(part.lack_of_fit for part in document.parts):
+        blocks += [
+            overall_table(document.parts),
+            misfit_by_point(document.parts, chain.axes),
+            misfit_by_band(document.parts),
+            misfit_by_class(document.parts),
+        ]
+    text = "Residuals divided by their standard deviation: noise, and off the fitted data the model's own uncertainty."
+    return Section(f"Version {number + 1} against measurements", (text,), tuple(blocks))
+
+
+def _fit_table(chain: Chain, compared: Compared) -> Table:
+    rows = tuple(
+        (
+            chain.labels.get(one.experiment_id, one.experiment_id),
+            "held out" if one.data == "heldOut" else "fitted",
+            "–" if one.fit_percent is None else f"{significant(one.fit_percent, 4)} %",
+        )
+        for one in compared.document.experiments
+    )
+    return Table(("experiment", "data", "fit 100 (1 − ‖y − ŷ‖/‖y‖)"), rows, text_columns=2)
+
+
+def diagnosis_section(chain: Chain, diagnosis: Diagnosis, number: int) -> Section:
+    """What a version lacks."""
+    titles = {one.kind: one.title for one in diagnosis.ranking}
+    names = ", ".join(titles.get(kind, kind) for kind in diagnosis.announced)
+    found = f"Announced: {names}. " if names else ""
+    share = f"The best effect explains {percent(diagnosis.explained_share)} of it." if names else ""
+    text = (f"{found}{VERDICTS[diagnosis.verdict]} {share}".strip(),)
+    blocks: list[Plot | Table] = []
+    if any(one.evidence for one in diagnosis.ranking):
+        blocks.append(ranking(diagnosis))
+    if diagnosis.missing:
+        blocks.append(missing(diagnosis, chain.labels, chain.axes))
+    if len(diagnosis.ranking) > 1:
+        blocks.append(confusability(diagnosis))
+    if diagnosis.visibility:
+        blocks.append(visibility(diagnosis.visibility))
+    return Section(f"What version {number + 1} lacks", text, tuple(blocks))
+
+
+def side_by_side_plots(chain: Chain) -> list[Plot]:
+    """The first and the latest version in up to three experiments, held-out ones before others."""
+    ends = [chain.versions[0], chain.versions[-1]] if len(chain.versions) > 1 else [chain.versions[0]]
+    known = [(chain.version_name(model), chain.rational(model)) for model in ends]
+    versions = [(name, model) for name, model in known if model is not None]
+    fitted = {name for model in chain.versions for name in model.experiment_ids}
+    chosen = sorted(chain.experiments, key=lambda one: one.id in fitted)
+    plots: list[Plot] = []
+    for one in chosen:
+        measured = (chain.measurements or {}).get(one.id)
+        if measured is None or not versions or len(plots) == 3:
+            continue
+        try:
+            batch = gather([measured])[0]
+            plots.append(side_by_side(versions, batch, chain.labels[one.id], chain.axes))
+        except MisuseError:
+            continue
+    return plots
