@@ -21,6 +21,8 @@ Output = Annotated[
     Path | None, typer.Option("--output", "-o", help="folder for the results; default: beside FILE, named after it")
 ]
 
+Report = Annotated[Path | None, typer.Option("--report", dir_okay=False, help="write the figures as one HTML file")]
+
 
 @application.command()
 def serve() -> None:
@@ -44,6 +46,35 @@ def identify(file: RequestFile, output: Output = None) -> None:
     from app.offline.commands import identify as run
 
     run(file, output or file.with_name(f"{file.stem}-identified"))
+
+
+@application.command()
+def compare(file: RequestFile, output: Output = None, report: Report = None) -> None:
+    """See where a model fails; FILE has plant, model and experiments, held-out ones marked `heldOut: true`."""
+    from app.offline.loop_commands import compare as run
+
+    run(file, output or file.with_name(f"{file.stem}-compared"), report)
+
+
+@application.command()
+def diagnose(
+    file: RequestFile,
+    output: Output = None,
+    add: Annotated[bool, typer.Option("--add", help="add the best effect to the model and fit it again")] = False,
+    report: Report = None,
+) -> None:
+    """Find the physical effect that a model lacks; FILE as for compare."""
+    from app.offline.loop_commands import diagnose as run
+
+    run(file, output or file.with_name(f"{file.stem}-diagnosed"), add, report)
+
+
+@application.command()
+def extend(file: RequestFile, output: Output = None, report: Report = None) -> None:
+    """Add an effect to a model and fit it again; FILE as for compare, and `extend: {effect: …}`."""
+    from app.offline.loop_commands import extend as run
+
+    run(file, output or file.with_name(f"{file.stem}-extended"), report)
 
 
 @application.command()

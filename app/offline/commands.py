@@ -1,58 +1,29 @@
 """The commands `identify` and `design`."""
 
-from collections.abc import Callable
-from functools import wraps
 from pathlib import Path
 from typing import Any
 
-import typer
-from rich.console import Console
-
 from app.conversion.plants import is_state_space
-from app.errors import ProblemError
-from app.json_pointer import field_pointer
 from app.offline import results
 from app.offline.documents import checked, load, section
 from app.offline.experiments import experiments_of
+from app.offline.explained import explained
+from app.offline.subjects import model_in, plant_in
 from app.offline.workplace import DESIGN_ID, MODEL_ID, PLANT_ID, Workplace, stored, workplace
 from app.schemas.designs import Design, DesignRequest
 from app.schemas.experiments import Experiment
-from app.schemas.models import Model, ModelRequest, StatedModelRequest
-from app.schemas.plants import Plant, PlantRequest
+from app.schemas.models import Model, ModelRequest
+from app.schemas.plants import Plant
 from app.schemas.signals import Signals, SignalsRequest
 from app.schemas.state_space import StateSpaceModelRequest
-from app.services import designs, models, plants, signals, state_space_models
-from identification.errors import MisuseError
-
-Command = Callable[[Path, Path], None]
+from app.services import designs, models, signals, state_space_models
 
 
-def _explained(command: Command) -> Command:
-    """A bad request ends the program with what is wrong and where, instead of a traceback."""
-
-    @wraps(command)
-    def run(file: Path, output: Path) -> None:
-        console = Console(stderr=True, highlight=False, markup=False)
-        try:
-            command(file, output)
-        except ProblemError as error:
-            console.print(f"{file}: {error.detail}")
-            for problem in error.errors:
-                console.print(f"  {problem.pointer or '/'}: {problem.detail}")
-        except MisuseError as error:
-            console.print(f"{file}: {error}" + (f" ({field_pointer(error.field)})" if error.field else ""))
-        else:
-            return
-        raise typer.Exit(1)
-
-    return run
-
-
-@_explained
+@explained
 def identify(file: Path, output: Path) -> None:
     """Identify a model from the experiments in a request file."""
     content = load(file)
-    plant = _plant(content)
+    plant = plant_in(content)
     with workplace() as place:
         experiments = experiments_of(place, plant, section(content, "experiments"), file.parent)
         names = [experiment.id for experiment, _ in experiments]
@@ -67,12 +38,12 @@ def identify(file: Path, output: Path) -> None:
     results.write_model(output, model, [experiment for experiment, _ in chosen])
 
 
-@_explained
+@explained
 def design(file: Path, output: Path) -> None:
     """Design the experiments of a request file, and make their signals when it asks for them."""
     content = load(file)
-    plant = _plant(content)
-    model = _model(plant, section(content, "model"), file.parent)
+    plant = plant_in(content)
+    model = model_in(content, plant, file.parent)
     asked = {"plantId": PLANT_ID, "modelId": model.id, **section(content, "design")}
     request = checked(DesignRequest, asked, "/design")
     with workplace() as place:
@@ -96,16 +67,3 @@ def _signals(place: Workplace, design: Design, request: SignalsRequest, output: 
     found = place.run("signals", signals.payload(design, request))
     document = stored(found.document, "signals", plantId=PLANT_ID, jobId=None)
     results.write_signals(output, Signals.model_validate(document), place.arrays.get(found.arrays or ""))
-
-
-def _plant(content: dict[str, Any]) -> Plant:
-    request = checked(PlantRequest, section(content, "plant"), "/plant")
-    return Plant.model_validate(stored(plants.described(request), PLANT_ID))
-
-
-def _model(plant: Plant, given: Any, folder: Path) -> Model:
-    """A stated model, or the model.json that `identify` wrote."""
-    if isinstance(given, str):
-        return checked(Model, {**load(folder / given), "plantId": PLANT_ID}, "/model")
-    request = checked(StatedModelRequest, {"plantId": PLANT_ID, **given}, "/model")
-    return Model.model_validate(stored(models.stated(plant, request), MODEL_ID, plantId=PLANT_ID, jobId=None))

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,11 +12,19 @@ from rich.table import Table
 
 from app.files import npz_file
 from app.files.stored import arrays_file
+from app.report.effect_text import amplitude
 from app.schemas.designs import Design
+from app.schemas.diagnoses import Diagnosis
 from app.schemas.experiments import Experiment
 from app.schemas.models import Model
+from app.schemas.outcomes import TestDocument
 from app.schemas.signals import Signals
 from app.schemas.state_space import StateSpaceResult
+
+if TYPE_CHECKING:
+    from app.report.chain.documents import Chain, Compared
+
+MOST_RANKED = 10
 
 
 def write_model(folder: Path, model: Model, experiments: Sequence[Experiment]) -> None:
@@ -37,6 +45,8 @@ def write_model(folder: Path, model: Model, experiments: Sequence[Experiment]) -
     deviations = model.standard_deviations or [float("nan")] * len(model.theta)
     for name, value, deviation in zip(model.parameter_names, model.theta, deviations, strict=True):
         table.add_row(name, f"{value:.6g}", f"{deviation:.3g}")
+    if model.effects:
+        Console().print(_effects(model))
     _say(folder, table)
 
 
@@ -49,6 +59,19 @@ def _matrices(found: StateSpaceResult) -> dict[str, NDArray[Any]]:
         if source is not None
         for name in "abcd"
     }
+
+
+def _effects(model: Model) -> Table:
+    errors = model.extension
+    title = ""
+    if errors is not None:
+        title = f"error {errors.before.fitted:.3g} → {errors.after.fitted:.3g}"
+        if errors.before.held_out is not None and errors.after.held_out is not None:
+            title += f", held out {errors.before.held_out:.3g} → {errors.after.held_out:.3g}"
+    table = Table("effect", "amplitude", title=title)
+    for one in model.effects:
+        table.add_row(one.title, amplitude(one))
+    return table
 
 
 def write_design(folder: Path, design: Design) -> None:
@@ -75,6 +98,47 @@ def write_signals(folder: Path, signals: Signals, arrays: Mapping[str, NDArray[A
         numbers = (str(signal.samples), f"{signal.peak:.4g}", f"{signal.crest_factor:.3f}")
         table.add_row(str(signal.index), point, *numbers)
     _say(folder, table)
+
+
+def write_comparison(folder: Path, compared: "Compared") -> None:
+    """comparison.json, comparison.npz with the normalised residuals of each experiment."""
+    found = compared.document
+    _write(folder, "comparison.json", found)
+    (folder / "comparison.npz").write_bytes(npz_file.write(dict(compared.arrays)))
+    fits = Table("experiment", "operating point", "data", "fit %", title="comparison")
+    for one in found.experiments:
+        point = ", ".join(f"{value:g}" for value in one.operating_point)
+        fits.add_row(one.experiment_id, point, one.data, "–" if one.fit_percent is None else f"{one.fit_percent:.2f}")
+    Console().print(fits)
+    table = Table("lack of fit", "χ²", "degrees of freedom", "p-value")
+    for part in found.parts:
+        named: list[tuple[str, TestDocument | None]] = [(part.data, part.lack_of_fit)]
+        named += [(f"{part.data}, {one.name} lines", one) for one in part.by_line_class]
+        for name, test in named:
+            if test is not None and test.statistic is not None:
+                table.add_row(name, f"{test.statistic:.5g}", f"{test.degrees_of_freedom:g}", f"{test.p_value:.2g}")
+    _say(folder, table)
+
+
+def write_diagnosis(folder: Path, found: Diagnosis) -> None:
+    """diagnosis.json."""
+    _write(folder, "diagnosis.json", found)
+    names = ", ".join(found.announced) or "no effect announced"
+    table = Table("effect", "weight", "amplitude", "p adjusted", title=f"{found.verdict}: {names}")
+    for one in found.ranking[:MOST_RANKED]:
+        weight = "" if one.evidence is None else f"{one.evidence.weight:.3f}"
+        size = "" if one.evidence is None else amplitude(one.evidence.effect)
+        table.add_row(one.kind, weight, size, f"{one.adjusted_p_value:.2g}")
+    _say(folder, table)
+
+
+def write_report(path: Path, chain: "Chain") -> None:
+    """The report of the whole chain as one HTML file."""
+    from app.report.chain.build import chain_report
+    from app.report.page import write
+
+    write(chain_report(chain), path)
+    Console().print(f"report in {path}")
 
 
 def _status(outcome: Any) -> str:

@@ -23,6 +23,9 @@ def estimate(value: float, deviation: float) -> str:
     """Value ± standard deviation, the latter to two significant digits and the former to the same place."""
     if not (isfinite(deviation) and deviation > 0):
         return significant(value)
+    power = floor(log10(max(abs(value), deviation)))
+    if not -4 <= power < 6:
+        return f"({estimate(value / 10.0**power, deviation / 10.0**power)})·10{_superscript(power)}"
     places = max(1 - floor(log10(float(f"{deviation:.1e}"))), 0)
     return f"{value:.{places}f} ± {deviation:.{places}f}".replace("-", "−")
 

@@ -36,12 +36,12 @@ def experiments_section(chain: Chain) -> Section:
     """What was measured, and what of it the model has seen."""
     fitted = {name for model in chain.versions for name in model.experiment_ids}
     rows = []
-    for one in sorted(chain.experiments, key=lambda e: e.operating_point):
+    for one in sorted(chain.experiments, key=lambda one: one.operating_point or []):
         known = one.understood
         rows.append(
             (
                 chain.labels[one.id],
-                chain.axes.point(tuple(one.operating_point)),
+                chain.place(one),
                 "fitted" if one.id in fitted else "held out",
                 {"timeRecord": "record", "frequencyResponse": "frequency response"}.get(one.kind, "other"),
                 "–" if known.samples is None else str(known.samples),

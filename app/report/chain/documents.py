@@ -20,7 +20,7 @@ from app.schemas.models import ErrorsDocument, Model
 from app.schemas.plants import ContinuousTimeStructure, DiscreteTimeStructure, Plant
 from identification.extension.model import ExtendedModel
 from identification.scheduling import SchedulingVariable
-from identification.signals import Measurement, OperatingPoint
+from identification.signals import Measurement
 
 Arrays = Mapping[str, NDArray[Any]]
 
@@ -67,7 +67,11 @@ class Chain:
     @cached_property
     def labels(self) -> dict[str, str]:
         """How each experiment is called: its name, or its operating point."""
-        return {one.id: one.name or self.axes.point(tuple(one.operating_point)) for one in self.experiments}
+        return {one.id: one.name or self.place(one) for one in self.experiments}
+
+    def place(self, one: Experiment) -> str:
+        """The operating point of an experiment in words."""
+        return "varying" if one.operating_point is None else self.axes.point(tuple(one.operating_point))
 
     def rational(self, model: Model) -> ExtendedModel | None:
         """The model with its effects; None for other structures than rational ones."""
@@ -100,10 +104,6 @@ class Chain:
                 found.append(_step("without effects", model.extension.before))
             found.append(_step(self.version_name(model), model.extension.after))
         return found
-
-    def points(self) -> list[OperatingPoint]:
-        """The distinct operating points of the experiments."""
-        return sorted({tuple(one.operating_point) for one in self.experiments})
 
 
 def _step(name: str, errors: ErrorsDocument) -> Step:

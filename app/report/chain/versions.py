@@ -4,7 +4,8 @@ import numpy as np
 
 from app.report.chain.documents import Chain, Compared
 from app.report.document import Plot, Section, Table
-from app.report.figures.effects import amplitude, confusability, ranking, visibility
+from app.report.effect_text import amplitude
+from app.report.figures.effects import confusability, ranking, visibility
 from app.report.figures.misfit import misfit_by_band, misfit_by_class, misfit_by_point, overall_table
 from app.report.figures.misfit_map import misfit_map
 from app.report.figures.missing import missing

@@ -5,10 +5,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from app.report.document import Plot, Table
-from app.report.numbers import estimate, percent, probability, significant, weight
+from app.report.effect_text import amplitude
+from app.report.numbers import percent, probability, significant, weight
 from app.report.style import NEUTRAL, SEQUENTIAL, colour, new_figure, wrapped
 from app.schemas.diagnoses import Diagnosis, EffectVisibility, RankedEffect
-from app.schemas.effects import PlacedEffectDocument
 
 MOST_BARS = 8
 MOST_CONFUSED = 12
@@ -65,22 +65,6 @@ def ranking_table(ranked: Sequence[RankedEffect]) -> Table:
         for one in ranked
     )
     return Table(heads, rows, "Refitted effects by evidence, then the others by their score test", text_columns=4)
-
-
-def amplitude(effect: PlacedEffectDocument) -> str:
-    """The amplitude with its deviation and unit, and the further parameters."""
-    deviations = effect.standard_deviations or [[float("nan")] * len(row) for row in effect.coefficients]
-    values = [
-        estimate(value, deviation)
-        for row, own in zip(effect.coefficients, deviations, strict=True)
-        for value, deviation in zip(row, own, strict=True)
-    ]
-    further = [
-        f"{one.name} {estimate(one.value, one.standard_deviation or float('nan'))}"
-        for one in effect.parameters
-        if one.fitted
-    ]
-    return ", ".join([f"{' | '.join(values)} {effect.unit}", *further])
 
 
 def confusability(diagnosis: Diagnosis) -> Plot:

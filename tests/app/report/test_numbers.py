@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.report.numbers import estimate, percent, point_label, significant
+from app.report.numbers import estimate, percent, point_label, probability, significant, weight
 
 
 @pytest.mark.parametrize(
@@ -39,6 +39,7 @@ def test_the_text_is_the_number_to_its_digits(value: float, digits: int) -> None
         (1234.5, 99.6, "1234 ± 100"),
         (1.0, 0.0996, "1.00 ± 0.10"),
         (2.0, float("inf"), "2.00"),
+        (3.924e-6, 1.2e-7, "(3.92 ± 0.12)·10⁻⁶"),
     ],
 )
 def test_an_estimate_ends_where_its_deviation_ends(value: float, deviation: float, text: str) -> None:
@@ -47,4 +48,6 @@ def test_an_estimate_ends_where_its_deviation_ends(value: float, deviation: floa
 
 def test_shares_and_operating_points() -> None:
     assert percent(0.9728) == "97.3 %"
+    assert [weight(share) for share in (0.0, 0.0213, 1.0)] == ["< 0.1 %", "2.1 %", "> 99.9 %"]
+    assert [probability(p) for p in (0.0, 0.0213)] == ["< 10⁻³⁰⁰", "0.021"]
     assert point_label((1.5, -2.0), ("v", "load"), ("m/s", "")) == "v = 1.5 m/s, load = −2"
