@@ -1,5 +1,6 @@
 """What estimators of affine state-space models return, with Cramér–Rao bounds on what does not depend on the basis."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -48,18 +49,21 @@ class AffineEstimate:
 
         cov ŷ(t) = S(t) P_θ S(t)ᵀ,   S = ∂ŷ/∂θ from  δx(t+1) = A δx + δA x + δB u,   δy = C δx + δC x + δD u
         """
+        total = np.zeros((len(input), self.model.n_outputs, self.model.n_outputs))
+        for dy in self.output_changes(input, scheduling):
+            total += dy[:, :, None] * dy[:, None, :]
+        return total
+
+    def output_changes(self, input: FloatArray, scheduling: FloatArray) -> Iterator[FloatArray]:
+        """S(t) v (N, n_y) for one direction v after the other, Σ v vᵀ = P_θ; S as in `output_covariance`."""
         model, sizes = self.model, AffineSizes.of(self.model)
-        directions = _root(self._covariance())
         a, b, c, _ = model.frozen(scheduling)
         x = propagate(a, (b @ input[:, :, None])[..., 0], np.zeros(sizes.order))[:-1]
-        total = np.zeros((len(input), sizes.n_outputs, sizes.n_outputs))
-        for direction in directions.T:
+        for direction in _root(self._covariance()).T:
             da, db, dc, dd = frozen_matrices(sizes.split(direction), scheduling)
             forcing = (da @ x[:, :, None] + db @ input[:, :, None])[..., 0]
             dx = propagate(a, forcing, np.zeros(sizes.order))[:-1]
-            dy = (c @ dx[:, :, None] + dc @ x[:, :, None] + dd @ input[:, :, None])[..., 0]
-            total += dy[:, :, None] * dy[:, None, :]
-        return total
+            yield (c @ dx[:, :, None] + dc @ x[:, :, None] + dd @ input[:, :, None])[..., 0]
 
     def response_covariance(self, points: FloatArray, omega: FloatArray) -> FloatArray:
         """Covariance of (Re G, Im G) with the scheduling held still at points (M, n_p), (M, F, n_y, n_u, 2, 2)."""

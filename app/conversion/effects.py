@@ -8,6 +8,7 @@ import numpy as np
 
 from app.arrays import finite_list_or_none
 from app.conversion.models import kept_model
+from app.conversion.varying_models import kept_estimate
 from app.schemas.effects import EffectParameter, PlacedEffectDocument
 from app.schemas.models import Model
 from app.schemas.plants import Plant
@@ -16,6 +17,7 @@ from identification.effects.library import library
 from identification.effects.second_variable import SecondVariable
 from identification.extension.model import ExtendedModel, PlacedEffect
 from identification.places.place import Effect
+from identification.varying.frozen import frozen
 
 
 def effect_of(kind: str) -> Effect | None:
@@ -24,7 +26,9 @@ def effect_of(kind: str) -> Effect | None:
 
 
 def extended_model(model: Model, plant: Plant) -> ExtendedModel:
-    """The model of a document with the effects that it carries."""
+    """The model of a document with the effects that it carries; raises MisuseError where there is no such form."""
+    if model.varying is not None:
+        return frozen(kept_estimate(model, plant)).model
     covariance = None if model.joint_covariance is None else np.array(model.joint_covariance)
     return ExtendedModel(kept_model(model, plant), tuple(map(placed_effect, model.effects)), covariance)
 

@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from app.arrays import ComplexVector, Vector
-from app.schemas.common import CamelModel, Double, Timestamp
+from app.schemas.common import CamelModel, Double, Integer, Timestamp
 from app.schemas.experiments import Identifier
 from app.schemas.outcomes import TestDocument
 from app.schemas.plants import LongText, Text
@@ -29,9 +29,15 @@ class ComparedExperiment(CamelModel):
     """How well the model explains one experiment."""
 
     experiment_id: str
-    operating_point: Vector
+    operating_point: Vector | None = Field(description="null where the scheduling varied")
     data: Data = Field(description="whether the model, or a version before it, was fitted to this experiment")
-    fit_percent: Double | None = Field(description="100 (1 − ‖y − ŷ‖/‖y‖) at the excited lines; null for zero output")
+    fit_percent: Double | None = Field(
+        description="100 (1 − ‖y − ŷ‖/‖y‖) at the excited lines, null for zero output; where the scheduling varied the"
+        " best fit rate over time"
+    )
+    vaf_percent: Double | None = Field(
+        default=None, description="variance accounted for over time, where the scheduling varied"
+    )
 
 
 class PointTest(CamelModel):
@@ -50,7 +56,7 @@ class BandTest(CamelModel):
 
 
 class ComparisonPart(CamelModel):
-    """Tests of the experiments that were fitted, or of those that were held out.
+    """Tests of the experiments that were fitted, or of those that were held out, or of one with varying scheduling.
 
     Fitted: the model is fitted once more to these very data and its parameters are taken off the degrees of freedom.
     Held out: the uncertainty of the model is added to that of the noise. All tests are null or empty where the size of
@@ -58,6 +64,10 @@ class ComparisonPart(CamelModel):
     """
 
     data: Data
+    scheduling: Literal["still", "varying"] = Field(
+        default="still", description="still: all experiments at operating points; varying: one record along p(t)"
+    )
+    experiment_id: str | None = Field(default=None, description="that record")
     noise_known: bool = Field(description="whether the size of the noise is known from variances or periods")
     lack_of_fit: TestDocument | None = Field(description="the whitened residuals against the noise")
     by_point: list[PointTest]
@@ -70,6 +80,11 @@ class ComparisonPart(CamelModel):
     )
     dynamics: TestDocument | None = Field(description="whether even those do not fit; null if held out")
     between_harmonics: list[TestDocument] = Field(description="disturbances with frequencies of their own")
+    simulation_errors: list[TestDocument] = Field(
+        default_factory=list,
+        description="of a record along p(t) that is not synchronised: is y − ŷ white and normal, and independent"
+        " of past input and scheduling",
+    )
 
 
 class Comparison(CamelModel):
@@ -85,7 +100,9 @@ class Comparison(CamelModel):
     model_id: str
     mean_value: bool
     experiments: list[ComparedExperiment]
-    parts: list[ComparisonPart] = Field(description="first what was fitted, then what was held out, where given")
+    parts: list[ComparisonPart] = Field(
+        description="first what was fitted, then what was held out, where given; then each record along p(t)"
+    )
 
 
 class ComparisonList(CamelModel):
@@ -99,18 +116,32 @@ class ResidualRow(CamelModel):
     """Normalised residuals of one experiment, one a compared line."""
 
     experiment_id: str
-    operating_point: Vector
+    operating_point: Vector | None = Field(description="null where the scheduling varied")
+    output_number: Integer = Field(default=1, description="which output, counted from 1")
     data: Data
     frequencies_rad_per_second: Vector
     residual: ComplexVector = Field(description="z with E|z|² = 1 where the model explains the measurement")
     line_classes: list[LineClass]
 
 
+class TimeResidualRow(CamelModel):
+    """What the model leaves of one output of a record along varying scheduling."""
+
+    experiment_id: str
+    output_number: Integer
+    data: Data
+    sample_time_seconds: Double
+    residual: Vector = Field(description="y − ŷ in units of the deviation of the noise where that is known")
+
+
 class ComparisonMaps(CamelModel):
-    """Normalised residuals over operating point and frequency, one row an experiment."""
+    """Normalised residuals over operating point and frequency, one row an experiment and output."""
 
     comparison_id: str
     rows: list[ResidualRow]
+    time_rows: list[TimeResidualRow] = Field(
+        default_factory=list, description="over time, of records along varying scheduling"
+    )
 
 
 class ComparedResponse(CamelModel):

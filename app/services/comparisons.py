@@ -19,6 +19,7 @@ from app.schemas.comparisons import (
     Data,
     LineClass,
     ResidualRow,
+    TimeResidualRow,
 )
 from app.schemas.models import Model
 from app.schemas.plants import Plant
@@ -45,7 +46,9 @@ def submit(container: Container, request: ComparisonRequest, key: str | None) ->
     resources = container.resources
     model = model_of(named(resources, "models", request.model_id, "/modelId"))
     plant = plant_of(resources.get("plants", model.plant_id))
-    experiments = measured_of_plant(resources, request.experiment_ids, plant.id, "/experimentIds")
+    experiments = measured_of_plant(
+        resources, request.experiment_ids, plant.id, "/experimentIds", along=model.varying is not None
+    )
     task = payload(plant, model, request, experiments, fitted_experiments(resources, model))
     mark = fingerprint("createComparison", request.model_dump(mode="json"))
     return container.ledger.submit("comparison", task, KIND, plant.id, key, mark)
@@ -94,8 +97,15 @@ def maps(container: Container, comparison_id: str) -> ComparisonMaps:
     resource = container.resources.get(KIND, comparison_id)
     arrays = container.arrays.get(resource.arrays or "")
     experiments = enumerate(comparison_of(resource).experiments)
-    rows = [_row(place, experiment, arrays) for place, experiment in experiments]
-    return ComparisonMaps(comparison_id=comparison_id, rows=rows)
+    rows: list[ResidualRow] = []
+    over_time: list[TimeResidualRow] = []
+    for place, experiment in experiments:
+        if experiment.operating_point is None:
+            rows += _rows_of_outputs(place, experiment, arrays)
+            over_time += _over_time(place, experiment, arrays)
+        else:
+            rows.append(_row(place, experiment, arrays))
+    return ComparisonMaps(comparison_id=comparison_id, rows=rows, time_rows=over_time)
 
 
 def response(container: Container, comparison_id: str, experiment_id: str) -> ComparedResponse:
@@ -104,13 +114,14 @@ def response(container: Container, comparison_id: str, experiment_id: str) -> Co
     compared = comparison_of(resource).experiments
     arrays = container.arrays.get(resource.arrays or "")
     place = next((i for i, one in enumerate(compared) if one.experiment_id == experiment_id), None)
-    if place is None or f"measured{place}" not in arrays:
+    point = None if place is None else compared[place].operating_point
+    if place is None or point is None or f"measured{place}" not in arrays:
         raise NotFoundError(f"comparison {comparison_id} holds no response of experiment {experiment_id!r}")
     deviation = arrays.get(f"deviation{place}")
     return ComparedResponse(
         comparison_id=comparison_id,
         experiment_id=experiment_id,
-        operating_point=compared[place].operating_point,
+        operating_point=point,
         data=compared[place].data,
         frequencies_rad_per_second=arrays[f"excitedRadPerSecond{place}"].tolist(),
         measured=ComplexVector.of(arrays[f"measured{place}"]),
@@ -123,6 +134,26 @@ def as_file(container: Container, comparison_id: str, file_format: Format) -> by
     """The same as a file: arrays numbered by the place of the experiment, line classes 0, 1, 2."""
     resource = container.resources.get(KIND, comparison_id)
     return arrays_file(container.arrays.get(resource.arrays or ""), file_format)
+
+
+def _rows_of_outputs(place: int, experiment: ComparedExperiment, arrays: dict[str, NDArray[Any]]) -> list[ResidualRow]:
+    """One row an output, of a record along varying scheduling."""
+    columns = arrays[f"residual{place}"].T
+    one = [_row(place, experiment, {**arrays, f"residual{place}": column}) for column in columns]
+    return [row.model_copy(update={"output_number": i + 1}) for i, row in enumerate(one)]
+
+
+def _over_time(place: int, experiment: ComparedExperiment, arrays: dict[str, NDArray[Any]]) -> list[TimeResidualRow]:
+    return [
+        TimeResidualRow(
+            experiment_id=experiment.experiment_id,
+            output_number=i + 1,
+            data=experiment.data,
+            sample_time_seconds=float(arrays[f"sampleTimeSeconds{place}"]),
+            residual=column.tolist(),
+        )
+        for i, column in enumerate(arrays[f"timeResidual{place}"].T)
+    ]
 
 
 def _row(place: int, experiment: ComparedExperiment, arrays: dict[str, NDArray[Any]]) -> ResidualRow:

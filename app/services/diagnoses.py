@@ -71,8 +71,15 @@ def _source(resources: ResourceRepository, request: DiagnosisRequest) -> tuple[s
 
 
 def _judged_by(comparison: Comparison) -> list[str]:
-    fitted = [one.experiment_id for one in comparison.experiments if one.data == "fitted"]
-    return fitted or [one.experiment_id for one in comparison.experiments]
+    still = [one for one in comparison.experiments if one.operating_point is not None]
+    if not still:
+        raise UnprocessableError.at(
+            "/comparisonId",
+            "the scheduling varied in all experiments of this comparison; the library knows the shape of effects at"
+            " operating points that are held still: name such experiments in experimentIds",
+        )
+    fitted = [one.experiment_id for one in still if one.data == "fitted"]
+    return fitted or [one.experiment_id for one in still]
 
 
 def diagnosis_of(resource: Resource) -> Diagnosis:

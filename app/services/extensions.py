@@ -27,6 +27,10 @@ from app.services.plants import plant_of
 from app.store.resources import ResourceRepository
 
 HELD_OUT = "/heldOutExperimentIds"
+NO_EFFECTS = (
+    "a model from varying scheduling has no place for effects yet: their response is known at operating points that are"
+    " held still only, not along p(t); identify a rational model from such experiments and extend that"
+)
 
 
 def submit(container: Container, model_id: str, request: ExtensionRequest, key: str | None) -> JobRecord:
@@ -51,6 +55,8 @@ def payload(
     fitted: Set[str],
 ) -> dict[str, Any]:
     """What the task gets; raises UnprocessableError when the effect or the experiments do not fit the model."""
+    if model.varying is not None:
+        raise UnprocessableError.at("/effect", NO_EFFECTS)
     check_effect(request.effect, [*experiments, *held_out], "/effect")
     check_time_domain(model, experiments, "/experimentIds")
     check_time_domain(model, held_out, HELD_OUT)

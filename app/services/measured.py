@@ -9,8 +9,9 @@ from app.conversion.plants import is_state_space
 from app.errors import UnprocessableError
 from app.schemas.experiments import Experiment
 from app.schemas.models import Model
-from app.schemas.plants import DiscreteTimeStructure
-from app.services.experiments import experiment_of, local_experiments
+from app.schemas.plants import DiscreteStateSpaceStructure, DiscreteTimeStructure
+from app.services.documents import named_of_plant
+from app.services.experiments import KIND, experiment_of, local_experiments
 from app.services.fitting import SAMPLE_TIME_TOLERANCE
 from app.services.models import model_of
 from app.store.resources import ResourceRepository
@@ -20,10 +21,14 @@ LEAST_PERIODS = 2
 
 
 def measured_of_plant(
-    resources: ResourceRepository, identifiers: Sequence[str], plant_id: str, pointer: str
+    resources: ResourceRepository, identifiers: Sequence[str], plant_id: str, pointer: str, along: bool = False
 ) -> list[Measured]:
-    """The experiments that a list in the body names, with the hashes of their arrays."""
-    rows = local_experiments(resources, identifiers, plant_id, pointer)
+    """The experiments that a list in the body names, with the hashes of their arrays.
+
+    With `along` also records in which the scheduling varied, which are refused otherwise.
+    """
+    found = named_of_plant(resources, KIND, identifiers, plant_id, pointer) if along else None
+    rows = local_experiments(resources, identifiers, plant_id, pointer) if found is None else found
     return [(experiment_of(row), row.arrays or "") for row in rows]
 
 
@@ -48,15 +53,18 @@ def fitted_experiments(resources: ResourceRepository, model: Model) -> set[str]:
 def check_time_domain(model: Model, experiments: Sequence[Measured], pointer: str) -> None:
     """Raises UnprocessableError at the experiment whose sampling is not that of a model in discrete time.
 
-    Also for a state-space model, which is not held against measurements here.
+    Also for a state-space model, which is not held against measurements here unless its dependence is affine and it
+    comes from varying scheduling; then at experiments at operating points when it has several inputs or outputs.
     """
-    if is_state_space(model.structure):
+    if model.varying is not None:
+        _check_channels(model, experiments, pointer)
+    elif is_state_space(model.structure):
         raise UnprocessableError.at(
             "/modelId",
             "this is a state-space model, whose errors its own document states; only rational models are compared and"
             " diagnosed",
         )
-    if not isinstance(model.structure, DiscreteTimeStructure):
+    if not isinstance(model.structure, DiscreteTimeStructure | DiscreteStateSpaceStructure):
         return
     own = model.structure.sample_time_seconds
     for i, (experiment, _) in enumerate(experiments):
@@ -65,6 +73,18 @@ def check_time_domain(model: Model, experiments: Sequence[Measured], pointer: st
             what = "in continuous time" if given is None else f"sampled every {given:g} s"
             raise UnprocessableError.at(
                 f"{pointer}/{i}", f"the experiment is {what}, the model every {own:g} s; compare data of one sampling"
+            )
+
+
+def _check_channels(model: Model, experiments: Sequence[Measured], pointer: str) -> None:
+    assert model.state_space is not None, "models from varying scheduling are in state space"
+    one = model.state_space.input_count == model.state_space.output_count == 1
+    for i, (experiment, _) in enumerate(experiments):
+        if experiment.operating_point is not None and not one:
+            raise UnprocessableError.at(
+                f"{pointer}/{i}",
+                "the operating point was held still in this experiment; a model from varying scheduling is held against"
+                " such experiments only when it has one input and one output; give records along varying scheduling",
             )
 
 

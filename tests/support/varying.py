@@ -69,3 +69,24 @@ def body(plant: Json, signals: Signals, **more: object) -> Json:
     u, y, p = (signal.T.tolist() for signal in signals)
     named = {"plantId": plant["id"], "kind": "varyingRecord", "sampleTimeSeconds": 1.0}
     return {**named, "inputs": u, "outputs": y, "scheduling": p, **more}
+
+
+def still(point: float, seed: int, samples: int = 100, periods: int = 12, gain: float = 1.0) -> Json:
+    """The turbine with its scheduling held still, as a periodic time record without its plant."""
+    u, y, _ = _still_signals(point, seed, samples, periods)
+    return {
+        "kind": "timeRecord",
+        "operatingPoint": [point],
+        "sampleTimeSeconds": 1.0,
+        "periodSamples": samples,
+        "input": u.tolist(),
+        "output": (gain * y).tolist(),
+    }
+
+
+def _still_signals(point: float, seed: int, samples: int, periods: int) -> Signals:
+    g = np.random.default_rng([seed, round(1000 * point) + 5000])
+    u = np.tile(g.standard_normal(samples), periods + 1)[:, None]
+    signals = measured(PLANT, u, np.full((len(u), 1), point), NOISE, g)
+    first, second, third = (signal[samples:, 0] for signal in signals)
+    return first, second, third

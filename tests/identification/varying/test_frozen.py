@@ -1,0 +1,78 @@
+"""Affine models at frozen operating points: the same responses and covariances as the model itself."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from identification.affine_estimate import AffineEstimate
+from identification.affine_state_space import AffineStateSpace
+from identification.errors import MisuseError
+from identification.outcome import Outcome
+from identification.scheduling import SchedulingVariable
+from identification.varying.affine_parameters import AffineSizes
+from identification.varying.frozen import frozen, smallest_basis
+from tests.identification.varying.models import random_model
+
+OMEGA = np.linspace(0.1, 3.0, 7)
+
+
+def estimate(seed: int, order: int, n_p: int, known: bool = True) -> AffineEstimate:
+    """A random model with a random covariance of the right rank, in a state basis far from a good one."""
+    generator = np.random.default_rng(seed)
+    variables = tuple(SchedulingVariable(f"p{i}", "", -1.0, 1.0) for i in range(n_p))
+    model = dataclasses.replace(random_model(generator, order, n_p), variables=variables)
+    model = model.transformed(generator.standard_normal((order, order)) * np.geomspace(0.01, 10, order))
+    sizes = AffineSizes.of(model)
+    chart = sizes.chart(sizes.join((model.a, model.b, model.c, model.d)))
+    root = chart @ generator.standard_normal((sizes.free, sizes.free))
+    return AffineEstimate(model, Outcome("converged"), (), 1e-4 * root @ root.T if known else None)
+
+
+def theta(model: AffineStateSpace) -> np.ndarray:
+    return AffineSizes.of(model).join((model.a, model.b, model.c, model.d))
+
+
+@pytest.mark.parametrize(("order", "n_p"), [(1, 1), (2, 1), (3, 2), (4, 1)])
+def test_responses_and_their_covariances_are_those_of_the_model(order: int, n_p: int) -> None:
+    found = estimate(order + 10 * n_p, order, n_p)
+    model = frozen(found).model
+    points = np.random.default_rng(1).uniform(-1, 1, (3, n_p))
+    assert np.allclose(
+        model.base.frequency_response(points, OMEGA),
+        found.model.frequency_response(points, OMEGA)[..., 0, 0],
+        rtol=1e-8,
+    )
+    expected = found.response_covariance(points, OMEGA)[:, :, 0, 0]
+    assert np.allclose(model.base.response_covariance(points, OMEGA), expected, rtol=1e-6, atol=1e-8 * expected.max())
+    assert model.base.plant_size == AffineSizes.of(found.model).free
+    poles = np.sort_complex(model.base.poles(points))
+    assert np.allclose(poles, np.sort_complex(np.linalg.eigvals(found.model.frozen(points)[0])), atol=1e-8)
+
+
+def test_the_gradient_is_the_derivative() -> None:
+    base = frozen(estimate(5, 3, 1)).model.base
+    zeta = base.coefficients([[0.3], [-0.7]])
+    direction = np.random.default_rng(2).standard_normal(zeta.shape[1])
+    step = 1e-6 * direction
+    difference = base.structure.plant_response(zeta + step, OMEGA) - base.structure.plant_response(zeta - step, OMEGA)
+    tangent = np.einsum("mkf,k->mf", base.structure.plant_gradient(zeta, OMEGA), direction)
+    assert np.allclose(difference / 2e-6, tangent, rtol=1e-5, atol=1e-7)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_in_the_smallest_basis_the_parameters_lie_in_their_own_chart(seed: int) -> None:
+    model = estimate(seed, 2 + seed % 3, 1 + seed % 2).model
+    small = model.transformed(smallest_basis(model))
+    assert np.allclose(AffineSizes.of(small).similarity_tangent(theta(small)).T @ theta(small), 0, atol=1e-10)
+    generator = np.random.default_rng(seed)
+    for _ in range(20):
+        nearby = small.transformed(np.eye(model.order) + 0.1 * generator.standard_normal((model.order, model.order)))
+        assert np.linalg.norm(theta(nearby)) >= np.linalg.norm(theta(small)) * (1 - 1e-12)
+
+
+def test_a_model_without_covariance_has_none_and_one_with_several_channels_is_refused() -> None:
+    assert frozen(estimate(1, 2, 1, known=False)).model.covariance is None
+    wide = random_model(np.random.default_rng(3), 2, 1, 2, 1)
+    with pytest.raises(MisuseError, match="2 inputs"):
+        frozen(AffineEstimate(wide, Outcome("converged"), ()))
