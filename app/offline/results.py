@@ -107,7 +107,7 @@ def write_comparison(folder: Path, compared: "Compared") -> None:
     (folder / "comparison.npz").write_bytes(npz_file.write(dict(compared.arrays)))
     fits = Table("experiment", "operating point", "data", "fit %", title="comparison")
     for one in found.experiments:
-        point = ", ".join(f"{value:g}" for value in one.operating_point)
+        point = ", ".join(f"{value:g}" for value in one.operating_point or ()) or "varying"
         fits.add_row(one.experiment_id, point, one.data, "–" if one.fit_percent is None else f"{one.fit_percent:.2f}")
     Console().print(fits)
     table = Table("lack of fit", "χ²", "degrees of freedom", "p-value")

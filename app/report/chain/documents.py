@@ -86,12 +86,15 @@ class Chain:
         return model.name or {"stated": "stated", "identified": "identified"}.get(model.origin, model.origin)
 
     def map_rows(self, compared: Compared) -> list[MapRow]:
-        """The rows of a comparison's map, by operating point."""
+        """The rows of a comparison's map, by operating point; records along varying scheduling have none."""
         found = []
         for place, one in enumerate(compared.document.experiments):
-            label = self.labels.get(one.experiment_id, self.axes.point(tuple(one.operating_point)))
+            point = one.operating_point
+            if point is None:
+                continue
+            label = self.labels.get(one.experiment_id, self.axes.point(tuple(point)))
             own = (compared.arrays[f"{name}{place}"] for name in ("frequenciesRadPerSecond", "residual", "lineClass"))
-            found.append((one.operating_point, MapRow(label, one.data == "heldOut", *map(np.asarray, own))))
+            found.append((point, MapRow(label, one.data == "heldOut", *map(np.asarray, own))))
         return [row for _, row in sorted(found, key=lambda pair: pair[0])]
 
     def steps(self) -> list[Step]:
