@@ -13,14 +13,12 @@ Both in 19 of 20 runs or more. And the covariance of θ̂ over the runs: the lar
 below (1 + √(6/runs))², the edge of its sampling error if C = R⁻¹.
 """
 
-import argparse
-import json
 from functools import partial
-from pathlib import Path
 from time import perf_counter
 
 import numpy as np
 
+from benchmarks.command import command_line, shown, write_json
 from benchmarks.ghosh_example import ACCEPTED, DEPENDENCE, DEVIATIONS, GRID, NOISE_VARIANCE, STRUCTURE, THETA, measured
 from benchmarks.processes import spread
 from identification.arrays import FloatArray
@@ -85,22 +83,11 @@ def study(case: str, runs: int, seed: int, workers: int) -> dict[str, object]:
 
 def main() -> None:
     """Parses the command line, runs, prints."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--runs", type=int, default=200)
-    parser.add_argument("--workers", type=int, default=2)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--output", type=Path)
-    options = parser.parse_args()
+    options = command_line(__doc__, runs=200, seed=1).parse_args()
     results = [study(case, options.runs, options.seed, options.workers) for case in CASES]
     for result in results:
-        print(
-            "; ".join(
-                f"{name}: {value:.4g}" if isinstance(value, float) else f"{name}: {value}"
-                for name, value in result.items()
-            )
-        )
-    if options.output:
-        options.output.write_text(json.dumps(results, indent=2, ensure_ascii=False) + "\n")
+        print("; ".join(f"{name}: {shown(value)}" for name, value in result.items()))
+    write_json(results, options.output)
 
 
 if __name__ == "__main__":

@@ -1,20 +1,17 @@
 """Is the stated covariance true? python -m benchmarks.covariance_truth --runs 1000.
 
 For every estimator a small system is measured many times; (x̂ − x)ᵀ P̂⁻¹ (x̂ − x) is held against χ² at 5 %, and the
-number of rejections must lie in its own 99 % binomial interval. Prints a table, and writes the same as JSON to a file
-or after the table.
+number of rejections must lie in its own 99 % binomial interval. Prints a table; --output writes JSON.
 """
 
-import argparse
-import json
 from collections.abc import Callable
-from pathlib import Path
 from time import perf_counter
 from typing import Any
 
 import numpy as np
 from scipy import stats
 
+from benchmarks.command import command_line, write_json
 from benchmarks.ghosh_example import DEPENDENCE, STRUCTURE, THETA, measured
 from benchmarks.processes import spread
 from identification.arrays import FloatArray
@@ -143,12 +140,7 @@ def verdict(distances: FloatArray, dimension: int) -> dict[str, Any]:
 
 def main() -> None:
     """Parses the command line, runs, prints."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--runs", type=int, default=1000)
-    parser.add_argument("--workers", type=int, default=2)
-    parser.add_argument("--seed", type=int, default=2018)
-    parser.add_argument("--output", type=Path, default=None)
-    options = parser.parse_args()
+    options = command_line(__doc__, runs=1000, seed=2018).parse_args()
     start = perf_counter()
     found = spread(all_distances, options.runs, options.seed, options.workers)
     result: dict[str, Any] = {
@@ -158,11 +150,7 @@ def main() -> None:
         low, high = each["interval"]
         print(f"{name:38s} {each['rejected']:4d} of {each['runs']} in [{low}, {high}] {each['true']!s:5s}", end=" ")
         print(f"mean {each['mean over dimension']:.3f}")
-    text = json.dumps({"cases": result, "seconds": perf_counter() - start}, indent=1)
-    if options.output is None:
-        print(text)
-    else:
-        options.output.write_text(text + "\n")
+    write_json({"cases": result, "seconds": perf_counter() - start}, options.output)
 
 
 if __name__ == "__main__":

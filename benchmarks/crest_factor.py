@@ -1,18 +1,16 @@
-"""Crest factors of designed multisines against random and Schroeder phases: python -m benchmarks.crest_factor [FILE].
+"""Crest factors of designed multisines against random and Schroeder phases: python -m benchmarks.crest_factor.
 
-Prints a table, and writes the same as JSON to FILE or after the table. Times are in units of the time that the best of
-1000 random draws of phases takes in the same run.
+Prints a table; --output writes JSON. Times are in units of the time that the best of 1000 random draws of phases takes
+in the same run.
 """
 
-import argparse
-import json
 from collections.abc import Callable
-from pathlib import Path
 from time import perf_counter
 from typing import Any
 
 import numpy as np
 
+from benchmarks.command import command_line, write_json
 from identification.arrays import FloatArray, IntArray
 from oed.realisation import crest_factor, multisine, signal_line_energies
 from oed.realisation.descent import schroeder_phases
@@ -122,19 +120,13 @@ def aligned(cells: list[str]) -> str:
 
 def main() -> None:
     """The whole table, about half a minute."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("file", type=Path, nargs="?", help="where to write the JSON")
-    file = parser.parse_args().file
+    options = command_line(__doc__).parse_args()
     print(aligned(list(HEADINGS)))
     rows = []
     for name in CASES:
         rows.append(measured(name))
         print(printed(rows[-1]), flush=True)
-    text = json.dumps({"draws": DRAWS, "seed": SEED, "rows": rows}, ensure_ascii=False, indent=2)
-    if file:
-        file.write_text(text + "\n", encoding="utf-8")
-    else:
-        print(text)
+    write_json({"draws": DRAWS, "seed": SEED, "rows": rows}, options.output)
 
 
 if __name__ == "__main__":

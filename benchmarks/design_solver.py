@@ -3,15 +3,13 @@
 python -m benchmarks.design_solver [--runs 7] [--degrees 10 20 40] [--output FILE]
 """
 
-import argparse
-import json
 import statistics
 import time
 from collections.abc import Callable
-from pathlib import Path
 
 import numpy as np
 
+from benchmarks.command import command_line, write_json
 from benchmarks.ghosh_example import DEPENDENCE, DEVIATIONS, GRID, NOISE_VARIANCE, STRUCTURE, THETA
 from identification.models import LpvModel
 from oed.design import design
@@ -25,10 +23,8 @@ MODEL = LpvModel(STRUCTURE, DEPENDENCE, THETA, np.zeros((6, 6)), NOISE_VARIANCE)
 
 def main() -> None:
     """Print a row per degree, and write the figures as JSON."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--runs", type=int, default=7)
+    parser = command_line(__doc__, runs=7)
     parser.add_argument("--degrees", type=int, nargs="+", default=[10, 20, 40])
-    parser.add_argument("--output", type=Path)
     arguments = parser.parse_args()
     rows = [compare(degree, arguments.runs) for degree in arguments.degrees]
     print("degree  certified J  as written J   gap      certified    as written   ratio (median, min … max)")
@@ -38,8 +34,7 @@ def main() -> None:
             f" {1e3 * row['certifiedSeconds']:9.1f} ms {1e3 * row['asWrittenSeconds']:10.0f} ms"
             f"   {row['ratio']:.1f} ({row['ratioMinimum']:.1f} … {row['ratioMaximum']:.1f})"
         )
-    if arguments.output:
-        arguments.output.write_text(json.dumps(rows, indent=2) + "\n")
+    write_json(rows, arguments.output)
 
 
 def compare(degree: int, runs: int) -> dict[str, float]:

@@ -3,14 +3,12 @@
 Prints the median of wall-clock and processor seconds over what is hidden; --output writes JSON.
 """
 
-import argparse
-import json
-from pathlib import Path
 from time import perf_counter, process_time
 from typing import Any
 
 import numpy as np
 
+from benchmarks.command import command_line, write_json
 from benchmarks.virtual_bench.study import MODEL, effects
 from identification.comparison.gather import gather
 from identification.diagnosis.diagnose import diagnose
@@ -72,16 +70,12 @@ def measured(count: int, points: int, lines: int, runs: int) -> dict[str, Any]:
 
 def main() -> None:
     """Parses the command line, runs, prints."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--runs", type=int, default=3)
-    parser.add_argument("--output", type=Path, default=None)
-    options = parser.parse_args()
+    options = command_line(__doc__, runs=3).parse_args()
     table = []
     for case in CASES:
         table.append(measured(*case, options.runs))
         print("  ".join(f"{name} {value:.3g}" for name, value in table[-1].items()), flush=True)
-    if options.output is not None:
-        options.output.write_text(json.dumps(table, indent=1) + "\n")
+    write_json(table, options.output)
 
 
 if __name__ == "__main__":

@@ -3,14 +3,13 @@
 python -m benchmarks.kergus_example [--runs 200] [--output FILE.json] [--page FILE.html]
 """
 
-import argparse
-import json
 import time
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from benchmarks.command import command_line, write_json
 from identification.bases.polynomial import Polynomial
 from identification.parametric.parametric_subspace import ParametricSubspace
 from identification.pole_regions.disc import Disc
@@ -116,11 +115,7 @@ def picture(page: Path) -> None:
 
 def main() -> None:
     """Print the table, and write it and the picture."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--runs", type=int, default=200)
-    parser.add_argument("--output", type=Path)
-    parser.add_argument("--page", type=Path)
-    arguments = parser.parse_args()
+    arguments = command_line(__doc__, runs=200, page=True).parse_args()
     result = {"noiseFree": noise_free(), "noisy": with_noise(arguments.runs)}
     print("noise-free relative errors", result["noiseFree"])
     for name, row in result["noisy"].items():
@@ -129,8 +124,7 @@ def main() -> None:
             f" (90 %: {row['upperDecileRelativeMisfit']:.3f})   distance to plant {row['medianDistanceToPlant']:.3f}"
             f" (90 %: {row['upperDecileDistanceToPlant']:.3f})   {1e3 * row['medianSeconds']:.1f} ms"
         )
-    if arguments.output:
-        arguments.output.write_text(json.dumps(result, indent=2) + "\n")
+    write_json(result, arguments.output)
     if arguments.page:
         picture(arguments.page)
 

@@ -3,14 +3,13 @@
 python -m benchmarks.open_channel [--order 10] [--output FILE.json] [--page FILE.html]
 """
 
-import argparse
-import json
 import time
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from benchmarks.command import command_line, write_json
 from examples.open_channel import BETWEEN, FREQUENCIES, MEASURED, OpenChannel, delay_free_responses
 from identification.bases.chebyshev import Chebyshev
 from identification.parametric.estimate import overall_error, response_errors
@@ -107,10 +106,8 @@ def picture(found: dict[str, Any], names: tuple[str, ...], page: Path) -> None:
 
 def main() -> None:
     """Print the table of errors, and write it and the picture."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = command_line(__doc__, page=True)
     parser.add_argument("--order", type=int, default=10)
-    parser.add_argument("--output", type=Path)
-    parser.add_argument("--page", type=Path)
     arguments = parser.parse_args()
     found = models(arguments.order)
     rows, own = table(found), floor(arguments.order)
@@ -121,10 +118,8 @@ def main() -> None:
     for name, row in rows.items():
         errors = " ".join(f"{e:7.3f}" for e in row["measured"] + row["between"])
         print(f"{name:44s} {errors}   max Re s {row['largestRealPart']:9.2e}   {row['seconds']:.2f} s")
-    if arguments.output:
-        geometry = {"depth": channel.depth, "velocity": channel.velocity, "celerity": channel.celerity}
-        result = {"channel": {**vars(channel), **geometry}, "own": own, "models": rows}
-        arguments.output.write_text(json.dumps(result, indent=2, default=float) + "\n")
+    geometry = {"depth": channel.depth, "velocity": channel.velocity, "celerity": channel.celerity}
+    write_json({"channel": {**vars(channel), **geometry}, "own": own, "models": rows}, arguments.output)
     if arguments.page:
         names = ("affine, Algorithm 1", "affine, Algorithm 2", "… refined by least squares")
         picture(found, names, arguments.page)

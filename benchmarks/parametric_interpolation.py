@@ -3,14 +3,12 @@
 python -m benchmarks.parametric_interpolation [--runs 20] [--noise 0.01] [--output FILE.json]
 """
 
-import argparse
-import json
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from benchmarks.command import command_line, write_json
 from benchmarks.kergus_example import AFFINE, LINES, SAMPLE_TIME, truth
 from identification.parametric.parametric_subspace import ParametricSubspace
 from identification.parametric.state_space_likelihood import StateSpaceLikelihood
@@ -113,10 +111,8 @@ def compare(seed: int, noise: float) -> dict[str, float]:
 
 def main() -> None:
     """Print a row per method, and write the figures."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--runs", type=int, default=20)
+    parser = command_line(__doc__, runs=20)
     parser.add_argument("--noise", type=float, default=0.01)
-    parser.add_argument("--output", type=Path)
     arguments = parser.parse_args()
     runs = [compare(seed, arguments.noise) for seed in range(arguments.runs)]
     table = {
@@ -126,8 +122,7 @@ def main() -> None:
     print(f"largest relative error between the operating points, noise {arguments.noise:g} of the response")
     for name, row in table.items():
         print(f"{name:40s} median {row['median']:.4f}   largest {row['largest']:.4f}")
-    if arguments.output:
-        arguments.output.write_text(json.dumps({"noise": arguments.noise, "errors": table}, indent=2) + "\n")
+    write_json({"noise": arguments.noise, "errors": table}, arguments.output)
 
 
 if __name__ == "__main__":

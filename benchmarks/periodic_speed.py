@@ -10,17 +10,15 @@ for are ≤ 20 ms an iteration and 100 times faster than dense. Then the growth 
 T n_x unknowns take where the period is run through in time.
 """
 
-import argparse
-import json
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
-from pathlib import Path
 from time import perf_counter
 
 import numpy as np
 from scipy.linalg import lu_factor, lu_solve
 
+from benchmarks.command import command_line, print_table, write_json
 from benchmarks.wind_turbine_plant import PLANT, SIZES, THETA, disturbed, noise_free
 from identification.arrays import ComplexArray, FloatArray
 from identification.varying.affine_parameters import AffineSizes
@@ -171,20 +169,16 @@ def growth(repeats: int) -> list[dict[str, float]]:
 
 def main() -> None:
     """Parses the command line, runs, prints."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = command_line(__doc__)
     parser.add_argument("--repeats", type=int, default=50)
     parser.add_argument("--dense-repeats", type=int, default=3)
-    parser.add_argument("--output", type=Path)
     options = parser.parse_args()
     speed = wind_turbine(options.repeats, options.dense_repeats)
     for name, value in speed.items():
         print(f"{name}: {value:.4g}")
     table = growth(max(options.repeats // 5, 3))
-    print(" ".join(f"{name:>12}" for name in (*table[0], "ms in blocks")))
-    for row in table:
-        print(" ".join(f"{value:12g}" if isinstance(value, int) else f"{value:12.3f}" for value in row.values()))
-    if options.output:
-        options.output.write_text(json.dumps({"speed": speed, "growth": table}, indent=2, ensure_ascii=False) + "\n")
+    print_table(table)
+    write_json({"speed": speed, "growth": table}, options.output)
 
 
 if __name__ == "__main__":

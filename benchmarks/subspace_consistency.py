@@ -1,19 +1,17 @@
 """Consistency: the error of McKelvey 2 against the number of lines, with unequal noise, K from its variances or K = I.
 
-python -m benchmarks.subspace_consistency [--runs 20] [--largest 100000] [--output FILE] [--picture FILE.html]
+python -m benchmarks.subspace_consistency [--runs 20] [--largest 100000] [--output FILE] [--page FILE.html]
 
 A system of order 4 with two inputs and outputs; noise of 30 % of the root mean square of the response between 1 and
 1.6 rad per sample and of 0.6 % elsewhere [Akcay2008, Theorem 4].
 """
 
-import argparse
-import json
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import plotly.graph_objects as go
 
+from benchmarks.command import command_line, write_json
 from identification.subspace.equidistant_subspace import EquidistantSubspace
 from identification.subspace.frequency_subspace import FrequencySubspace
 from tests.support.state_space import noisy, random_system, relative_error
@@ -29,21 +27,17 @@ BETWEEN = np.linspace(0.005, 3.13, 400)
 
 def main() -> None:
     """Print the errors and their slopes, write them as JSON and as a picture."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--runs", type=int, default=20)
+    parser = command_line(__doc__, runs=20, page=True)
     parser.add_argument("--largest", type=int, default=100_000)
-    parser.add_argument("--output", type=Path)
-    parser.add_argument("--picture", type=Path)
     arguments = parser.parse_args()
     counts = [int(m) for m in np.round(10 ** np.arange(2, np.log10(arguments.largest) + 0.01, 0.5))]
     result = run(counts, arguments.runs)
     print("lines      " + "  ".join(f"{m:>9d}" for m in counts) + "   slope")
     for row in result["methods"]:
         print(f"{row['method']:33s}" + "  ".join(f"{e:.3e}" for e in row["errors"]) + f"   {row['slope']:+.3f}")
-    if arguments.output:
-        arguments.output.write_text(json.dumps(result, indent=2) + "\n")
-    if arguments.picture:
-        picture(result).write_html(arguments.picture, include_plotlyjs=True)
+    write_json(result, arguments.output)
+    if arguments.page:
+        picture(result).write_html(arguments.page, include_plotlyjs=True)
 
 
 def run(counts: list[int], runs: int) -> dict[str, Any]:

@@ -7,14 +7,12 @@ q = n + 1; once spread over the band, and over four decades in discrete and in c
 are one to three each. The error is ‖G_model − G‖/‖G‖ on 500 lines over the same band, other than those used.
 """
 
-import argparse
-import json
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from benchmarks.command import command_line, write_json
 from identification.state_space import StateSpace
 from identification.subspace.equidistant_subspace import EquidistantSubspace
 from identification.subspace.frequency_subspace import FrequencySubspace
@@ -27,16 +25,14 @@ ASKED = 1e-8
 
 def main() -> None:
     """Print the largest error of each case, and write the figures as JSON."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = command_line(__doc__)
     parser.add_argument("--systems", type=int, default=20)
-    parser.add_argument("--output", type=Path)
     arguments = parser.parse_args()
     rows = run(range(1, 21), arguments.systems)
     print(f"largest and median relative error of {20 * arguments.systems} systems; asked: {ASKED:.0e}")
     for row in rows:
         print(f"{row['case']:55s} {row['largest']:.1e} (order {row['order']:2d})   {row['median']:.1e}")
-    if arguments.output:
-        arguments.output.write_text(json.dumps(rows, indent=2) + "\n")
+    write_json(rows, arguments.output)
 
 
 def run(orders: range, systems: int) -> list[dict[str, Any]]:

@@ -6,16 +6,14 @@ With `--processor` the times are those of the processor instead of the wall cloc
 (set OMP_NUM_THREADS=1 then).
 """
 
-import argparse
-import json
 import statistics
 import time
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from benchmarks.command import command_line, write_json
 from identification.signals import FrequencyResponse
 from identification.subspace.frequency_subspace import FrequencySubspace
 from tests.support.literal_subspace import literal_subspace
@@ -31,11 +29,9 @@ CASES = (
 
 def main() -> None:
     """Print the two comparisons and the growth with the number of lines, and write the figures as JSON."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--runs", type=int, default=5)
+    parser = command_line(__doc__, runs=5)
     parser.add_argument("--largest", type=int, default=1_000_000)
     parser.add_argument("--processor", action="store_true")
-    parser.add_argument("--output", type=Path)
     arguments = parser.parse_args()
     clock = time.process_time if arguments.processor else time.perf_counter
     compared = [compare(clock=clock, runs=arguments.runs, **case) for case in CASES]
@@ -58,9 +54,7 @@ def main() -> None:
             f"  {1e6 * row['seconds'] / row['lines']:6.2f} µs a line"
         )
     print(f"time grows as lines^{exponent:.2f}")
-    if arguments.output:
-        document = {"comparison": compared, "growth": growing, "exponent": exponent}
-        arguments.output.write_text(json.dumps(document, indent=2) + "\n")
+    write_json({"comparison": compared, "growth": growing, "exponent": exponent}, arguments.output)
 
 
 def measured(lines: int, order: int, inputs: int, outputs: int) -> tuple[Any, FrequencyResponse]:

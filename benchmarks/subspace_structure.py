@@ -1,21 +1,19 @@
 """The lightly damped structure of order 42 on 512 lines at 200 Hz: McKelvey 1 and 2, Levy, and Gauss–Newton from Levy.
 
-python -m benchmarks.subspace_structure [--noise 0.01] [--max-order 60] [--output FILE] [--picture FILE.html]
+python -m benchmarks.subspace_structure [--noise 0.01] [--max-order 60] [--output FILE] [--page FILE.html]
 
 Every model is estimated twice: from all lines, and from every second line, to be judged on the lines between them
 [Akcay2008, A comparison study; Model Order Determination].
 """
 
-import argparse
-import json
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
+from benchmarks.command import command_line, write_json
 from examples.lightly_damped_structure import SAMPLE_TIME, response, structure
 from identification.arrays import ComplexArray, FloatArray
 from identification.least_squares import levenberg_marquardt
@@ -34,11 +32,9 @@ Model = tuple[Callable[[FloatArray], ComplexArray], bool]
 
 def main() -> None:
     """Print the table of the four methods, write the figures as JSON and as a picture."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = command_line(__doc__, page=True)
     parser.add_argument("--noise", type=float, default=0.01)
     parser.add_argument("--max-order", type=int, default=60)
-    parser.add_argument("--output", type=Path)
-    parser.add_argument("--picture", type=Path)
     arguments = parser.parse_args()
     data = response(arguments.noise)
     rows, models = compare(data)
@@ -52,10 +48,9 @@ def main() -> None:
     orders = orders_of(data, arguments.max_order)
     print(f"order chosen by the error on held-out lines: {orders['chosen']}")
     result = {"noise": float(np.sqrt(data.variance[0])), "methods": rows, "orders": orders}
-    if arguments.output:
-        arguments.output.write_text(json.dumps(result, indent=2) + "\n")
-    if arguments.picture:
-        picture(data, models, orders).write_html(arguments.picture, include_plotlyjs=True)
+    write_json(result, arguments.output)
+    if arguments.page:
+        picture(data, models, orders).write_html(arguments.page, include_plotlyjs=True)
 
 
 def subspace_model(method: EquidistantSubspace | FrequencySubspace, data: FrequencyResponse) -> Model:

@@ -2,18 +2,16 @@
 
 An initial experiment at p = 0, 3, 5.5, 8 with white noise gives a first model; the second experiment is designed from
 it with what is still missing in accuracy, played as filtered noise, identified, and combined with the first. Prints a
-table against the figures of the paper, and writes the same as JSON to a file or after the table.
+table against the figures of the paper; --output writes JSON.
 """
 
-import argparse
-import json
 from dataclasses import asdict, dataclass
-from pathlib import Path
 from time import perf_counter
 from typing import Any
 
 import numpy as np
 
+from benchmarks.command import command_line, write_json
 from benchmarks.ghosh_example import ACCEPTED, DEPENDENCE, DEVIATIONS, GRID, STRUCTURE, THETA, measured
 from benchmarks.processes import spread
 from identification.estimates import LpvEstimate
@@ -124,23 +122,14 @@ def summary(runs: list[Run], seconds: float, workers: int) -> dict[str, Any]:
 
 def main() -> None:
     """Parses the command line, runs, prints."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--runs", type=int, default=500)
-    parser.add_argument("--workers", type=int, default=2)
-    parser.add_argument("--seed", type=int, default=2018)
-    parser.add_argument("--output", type=Path, default=None)
-    options = parser.parse_args()
+    options = command_line(__doc__, runs=500, seed=2018).parse_args()
     start = perf_counter()
     runs = spread(two_stages, options.runs, options.seed, options.workers)
     result = summary(runs, perf_counter() - start, options.workers)
     for name, value in result.items():
         shown = f"{value:.4g}" if isinstance(value, float) else str(value)
         print(f"{name:40s} {shown:>10s}   {PAPER.get(name, '')}")
-    text = json.dumps({"summary": result, "paper": PAPER, "runs": [asdict(run) for run in runs]}, indent=1)
-    if options.output is None:
-        print(text)
-    else:
-        options.output.write_text(text + "\n")
+    write_json({"summary": result, "paper": PAPER, "runs": [asdict(run) for run in runs]}, options.output)
 
 
 if __name__ == "__main__":

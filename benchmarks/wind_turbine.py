@@ -1,7 +1,7 @@
 """The wind turbine of the paper, many runs: how well do both methods fit, and is the Cramér–Rao bound reached?
 
     python -m benchmarks.wind_turbine [--runs 1000] [--workers 2] [--seed 1] [--noise 0.06] [--window 5]
-                                      [--methods white coloured moesp] [--output FILE.json] [--pictures FILE.html]
+                                      [--methods white coloured moesp] [--output FILE.json] [--page FILE.html]
 
 The plant and the experiments of [Goos2014, Section 5]: 50 000 samples, p(t) = cos(2πt/10), periods of 500 samples of
 which the first is dropped, or white noise as input for periodic MOESP; the same input in every run, power one, and
@@ -15,22 +15,18 @@ noise of its own, white or coloured, standard deviation `--noise`. Asked for are
   depends on.
 """
 
-import argparse
-import json
 from dataclasses import dataclass
 from functools import partial
-from pathlib import Path
 from time import perf_counter
 
 import numpy as np
-import plotly.graph_objects as go
-from plotly.subplots import make_subplots
 from scipy.stats import binom, chi2
 
+from benchmarks.command import command_line, print_table, write_json
 from benchmarks.processes import spread
+from benchmarks.wind_turbine_pictures import Cloud, pictures
 from benchmarks.wind_turbine_plant import (
     PLANT,
-    SIZES,
     THETA,
     aligned,
     cramer_rao,
@@ -130,98 +126,79 @@ def inside(deviations: ComplexArray, covariances: FloatArray) -> FloatArray:
 
 def summary(method: str, runs: Runs, noise: float, seconds: float) -> dict[str, object]:
     """The figures asked for."""
-    count = len(runs.fits)
-    truth, _ = three_eigenvalues(AffineEstimate(PLANT, Outcome("converged"), ()))
+    covariance, chart, ellipses = bound("white" if method == "moesp" else method, noise)
+    lowest = np.sqrt([*np.diag(ellipses[0]), *ellipses[1:, 0, 0]])
     result: dict[str, object] = {
         "case": NAMES[method],
-        "runs": count,
-        "noise": noise,
+        "runs": len(runs.fits),
         "converged": runs.converged,
-        "VAF, mean": float(runs.fits.mean()),
-        "VAF, standard deviation": float(runs.fits.std(ddof=1)),
-        "VAF, smallest": float(runs.fits.min()),
-        "eigenvalues, standard deviations": deviations(runs.eigenvalues),
+        "standard deviation of the noise": noise,
+        "output over noise in dB": 20 * np.log10(float(noise_free("multisine").output.std()) / noise),
+        "VAF in %, mean": float(runs.fits.mean()),
+        "VAF in %, standard deviation": float(runs.fits.std(ddof=1)),
+        "VAF in %, smallest": float(runs.fits.min()),
+        "eigenvalues over their Cramér–Rao deviations": (deviations(runs.eigenvalues) / lowest).round(4).tolist(),
     }
-    covariance, chart, ellipses = bound("white" if method == "moesp" else method, noise)
-    result["eigenvalues, Cramér–Rao deviations"] = np.sqrt([*np.diag(ellipses[0]), *ellipses[1:, 0, 0]]).tolist()
     if method != "moesp":
-        error = (runs.theta - THETA) @ chart
-        information = np.linalg.inv(chart.T @ covariance @ chart)
-        ratios = np.linalg.eigvalsh(
-            np.linalg.cholesky(information).T @ np.cov(error.T) @ np.linalg.cholesky(information)
-        )
-        result["covariance over Cramér–Rao bound, mean of 14 directions"] = float(ratios.mean())
-        result["its extremes"] = [float(ratios[0]), float(ratios[-1])]
-        result["their sampling edges"] = [
-            (1 - (SIZES.free / count) ** 0.5) ** 2,
-            (1 + (SIZES.free / count) ** 0.5) ** 2,
-        ]
-        result["inside the Cramér–Rao ellipses"] = inside(runs.eigenvalues - truth, ellipses).tolist()
-        result["truth inside the stated ellipses"] = inside(runs.eigenvalues - truth, runs.stated).tolist()
-        result["99 % interval of 95 %"] = (binom.ppf([0.005, 0.995], count, 0.95) / count).tolist()
+        result |= efficiency((runs.theta - THETA) @ chart, chart.T @ covariance @ chart) | coverage(runs, ellipses)
     return result | {"seconds": seconds}
 
 
-def deviations(eigenvalues: ComplexArray) -> list[float]:
+def efficiency(errors: FloatArray, covariance: FloatArray) -> dict[str, object]:
+    """The eigenvalues of the covariance over the runs, (n, free) errors in a chart, against the bound there."""
+    count, free = errors.shape
+    root = np.linalg.cholesky(np.linalg.inv(covariance))
+    ratios = np.linalg.eigvalsh(root.T @ np.cov(errors.T) @ root)
+    return {
+        f"covariance over Cramér–Rao bound, mean of {free} directions": float(ratios.mean()),
+        "its extremes": [float(ratios[0]), float(ratios[-1])],
+        "where their sampling ends": [(1 + sign * (free / count) ** 0.5) ** 2 for sign in (-1, 1)],
+    }
+
+
+def coverage(runs: Runs, ellipses: FloatArray) -> dict[str, object]:
+    """Shares of runs inside the bound's 95 % ellipses and inside those the runs state, and whether all may be 95 %."""
+    truth, _ = three_eigenvalues(AffineEstimate(PLANT, Outcome("converged"), ()))
+    interval = binom.ppf([0.005, 0.995], len(runs.fits), 0.95) / len(runs.fits)
+    shares = [inside(runs.eigenvalues - truth, covariances) for covariances in (ellipses, runs.stated)]
+    return {
+        "inside the 95 % Cramér–Rao ellipses": shares[0].tolist(),
+        "truth inside the 95 % ellipses that are stated": shares[1].tolist(),
+        "99 % interval of 95 %": interval.tolist(),
+        "all shares within it": bool(np.all((interval[0] <= shares) & (shares <= interval[1]))),
+    }
+
+
+def deviations(eigenvalues: ComplexArray) -> FloatArray:
     """Of Re and Im of the complex eigenvalue of A_0, and of both real ones of A_1."""
     columns = (eigenvalues[:, 0].real, eigenvalues[:, 0].imag, eigenvalues[:, 1].real, eigenvalues[:, 2].real)
-    return [float(np.std(column, ddof=1)) for column in columns]
-
-
-def ellipse(centre: complex, covariance: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """The 95 % ellipse as a curve."""
-    angle = np.linspace(0, 2 * np.pi, 200)
-    curve = np.sqrt(chi2.ppf(0.95, 2)) * np.linalg.cholesky(covariance) @ np.stack([np.cos(angle), np.sin(angle)])
-    return curve[0] + centre.real, curve[1] + centre.imag
-
-
-def pictures(results: dict[str, Runs], noise: float) -> go.Figure:
-    """Histograms of VAF, the cloud of the complex eigenvalue with its ellipse, and the real ones with intervals."""
-    truth, _ = three_eigenvalues(AffineEstimate(PLANT, Outcome("converged"), ()))
-    titles = [f"{NAMES[m]}: {what}" for m in results for what in ("VAF in %", "eigenvalue of A₀", "eigenvalues of A₁")]
-    figure = make_subplots(rows=len(results), cols=3, subplot_titles=titles)
-    for row, (method, runs) in enumerate(results.items(), 1):
-        _, _, ellipses = bound("white" if method == "moesp" else method, noise)
-        cloud, real = runs.eigenvalues[:, 0], runs.eigenvalues[:, 1:].real
-        x, y = ellipse(complex(truth[0]), ellipses[0])
-        half = np.sqrt(chi2.ppf(0.95, 1) * ellipses[1:, 0, 0])
-        marks = {"size": 3, "opacity": 0.5}
-        figure.add_trace(go.Histogram(x=runs.fits, nbinsx=60), row, 1)
-        figure.add_trace(go.Scatter(x=cloud.real, y=cloud.imag, mode="markers", marker=marks), row, 2)
-        figure.add_trace(go.Scatter(x=x, y=y, mode="lines", line={"color": "black"}), row, 2)
-        figure.add_trace(go.Scatter(x=real[:, 0], y=real[:, 1], mode="markers", marker=marks), row, 3)
-        for i, axis in ((0, "v"), (1, "h")):
-            for sign in (-1, 1):
-                at = float(truth[1 + i].real + sign * half[i])
-                getattr(figure, f"add_{axis}line")(at, row=row, col=3, line={"dash": "dot"})
-    figure.update_layout(showlegend=False, height=420 * len(results), width=1400, title=f"noise {noise}, 95 % bounds")
-    return figure
+    return np.array([np.std(column, ddof=1) for column in columns])
 
 
 def main() -> None:
     """Parses the command line, runs, prints."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--runs", type=int, default=1000)
-    parser.add_argument("--workers", type=int, default=2)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--noise", type=float, default=0.06)
-    parser.add_argument("--window", type=int, default=5)
+    parser = command_line(__doc__, runs=1000, seed=1, page=True)
+    parser.add_argument("--noise", type=float, default=0.06, help="standard deviation (default %(default)s)")
+    parser.add_argument("--window", type=int, default=5, help="of periodic MOESP (default %(default)s)")
     parser.add_argument("--methods", nargs="+", choices=list(NAMES), default=list(NAMES))
-    parser.add_argument("--output", type=Path)
-    parser.add_argument("--pictures", type=Path)
     options = parser.parse_args()
     results, figures = {}, []
     for method in options.methods:
         start = perf_counter()
         results[method] = all_runs(method, options.runs, options.seed, options.workers, options.noise, options.window)
         figures.append(summary(method, results[method], options.noise, perf_counter() - start))
-        for name, value in figures[-1].items():
-            print(f"{name}: {value:.6g}" if isinstance(value, float) else f"{name}: {value}", flush=True)
-        print()
-    if options.output:
-        options.output.write_text(json.dumps(figures, indent=2, ensure_ascii=False) + "\n")
-    if options.pictures:
-        pictures(results, options.noise).write_html(options.pictures, include_plotlyjs=True)
+    names = dict.fromkeys(name for each in figures for name in each if name != "case")
+    print_table([{"": name} | {str(each["case"]): each.get(name) for each in figures} for name in names])
+    write_json(figures, options.output)
+    if options.page:
+        truth, _ = three_eigenvalues(AffineEstimate(PLANT, Outcome("converged"), ()))
+        clouds = {
+            NAMES[method]: Cloud(
+                runs.fits, runs.eigenvalues, bound("white" if method == "moesp" else method, options.noise)[2]
+            )
+            for method, runs in results.items()
+        }
+        pictures(clouds, truth, options.noise).write_html(options.page, include_plotlyjs=True)
 
 
 if __name__ == "__main__":
