@@ -10,7 +10,14 @@ from pydantic import ValidationError
 from app.dependencies import ContainerDependency, Cursor, IdempotencyKey, Limit, ResourcesDependency
 from app.files.stored import Format
 from app.routers.downloads import file_answer, file_response
-from app.schemas.experiments import Experiment, ExperimentData, ExperimentList, ExperimentRequest, FileFields
+from app.schemas.experiments import (
+    Experiment,
+    ExperimentData,
+    ExperimentList,
+    ExperimentRequest,
+    FileFields,
+    RecordSpectrumDocument,
+)
 from app.schemas.jobs import Job
 from app.services import experiment_data, experiments
 from app.services.jobs import accepted
@@ -129,6 +136,12 @@ def get_experiment(experimentId: str, resources: ResourcesDependency) -> Experim
 def get_experiment_data(experimentId: str, container: ContainerDependency) -> ExperimentData:
     """The arrays of an experiment as JSON."""
     return experiment_data.as_document(container, experimentId)
+
+
+@router.get("/{experimentId}/spectrum")
+def get_experiment_spectrum(experimentId: str, container: ContainerDependency) -> RecordSpectrumDocument:
+    """The amplitudes of input, output and noise of a time record over frequency."""
+    return experiment_data.spectrum(container, experimentId)
 
 
 @router.get("/{experimentId}/file", response_class=Response, responses=file_answer(*get_args(Format)))

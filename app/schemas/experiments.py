@@ -287,3 +287,17 @@ class ExperimentData(
     ]
 ):
     """The arrays of an experiment."""
+
+
+class RecordSpectrumDocument(CamelModel):
+    """Amplitudes of a time record at its lines, of the mean over steady periods; of at most 4000 lines."""
+
+    experiment_id: str
+    periods: Integer = Field(description="steady periods that the mean is taken over; 1 when the record has no period")
+    frequencies_rad_per_second: Values
+    input: Values = Field(description="amplitude, in the unit of the input")
+    output: Values = Field(description="amplitude, in the unit of the output")
+    noise: Values | None = Field(
+        description="standard deviation of the output's amplitude; null when there is one period only"
+    )
+    excited: list[bool] = Field(description="whether the input excites the line")

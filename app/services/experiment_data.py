@@ -8,16 +8,20 @@ from numpy.typing import NDArray
 from app.arrays import ComplexMatrices, ComplexVector
 from app.container import Container
 from app.conversion.experiments import kept_measurement
+from app.conversion.extremes import finite
 from app.conversion.varying_records import record_columns, record_data
+from app.errors import UnprocessableError
 from app.files.stored import Format, arrays_file
 from app.schemas.experiments import (
     Experiment,
     ExperimentData,
     FrequencyResponseData,
     MatrixFrequencyResponseData,
+    RecordSpectrumDocument,
     TimeRecordData,
 )
 from app.services.experiments import KIND, experiment_of
+from identification.record_spectrum import record_spectrum
 from identification.signals import TimeRecord
 
 
@@ -59,6 +63,25 @@ def as_document(container: Container, experiment_id: str) -> ExperimentData:
             response=ComplexVector.of(data.response),
             variance=variance,
         )
+    )
+
+
+def spectrum(container: Container, experiment_id: str) -> RecordSpectrumDocument:
+    """The amplitudes of a time record; raises UnprocessableError for other experiments."""
+    experiment, kept = _kept(container, experiment_id)
+    if experiment.kind != "timeRecord":
+        raise UnprocessableError.at("/experimentId", "only time records at one operating point have a spectrum", "path")
+    data = kept_measurement(experiment, kept)
+    assert isinstance(data, TimeRecord), "it is of this kind"
+    found = record_spectrum(data)
+    return RecordSpectrumDocument(
+        experiment_id=experiment_id,
+        periods=found.periods,
+        frequencies_rad_per_second=found.frequencies.tolist(),
+        input=finite(found.input, "amplitudes").tolist(),
+        output=finite(found.output, "amplitudes").tolist(),
+        noise=None if found.noise is None else finite(found.noise, "amplitudes").tolist(),
+        excited=found.excited.tolist(),
     )
 
 

@@ -11,7 +11,7 @@ from tests.support.browser import Visit
 from tests.support.server import Server
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Browser
+    from playwright.sync_api import Browser, BrowserContext
 
 MISSING = "no chromium: install Debian's chromium, or set CHROMIUM to a browser"
 CHROMIUM = os.environ.get("CHROMIUM") or shutil.which("chromium")
@@ -36,10 +36,18 @@ def browser() -> Iterator["Browser"]:
         running.close()
 
 
-@pytest.fixture
-def visit(browser: "Browser", server: Server) -> Iterator[Visit]:
-    """A page of a fresh profile on the running server; at the end there must have been no error."""
+@pytest.fixture(scope="module")
+def profile(browser: "Browser", server: Server) -> Iterator["BrowserContext"]:
+    """One profile for a module, which keeps scripts between its pages."""
     with browser.new_context(base_url=server.url, viewport={"width": 1280, "height": 900}) as context:
-        visiting = Visit(context.new_page(), server.url)
-        yield visiting
-        assert visiting.faults == []
+        yield context
+
+
+@pytest.fixture
+def visit(profile: "BrowserContext", server: Server) -> Iterator[Visit]:
+    """A new page on the running server; at the end there must have been no error."""
+    visiting = Visit(profile.new_page(), server.url)
+    yield visiting
+    visiting.page.evaluate("localStorage.clear()")
+    visiting.page.close()
+    assert visiting.faults == []

@@ -134,7 +134,7 @@ def test_numbers_have_as_many_digits_as_they_are_worth(visit: Visit) -> None:
     assert text("significant", 0.00123456) == "0.00123"
     assert text("significant", -1234567) == "−1.23·10⁶"
     assert text("significant", 3e-5) == "3.00·10⁻⁵"
-    assert text("quantity", 4.5, "m/s") == "4.50 m/s"
+    assert text("quantity", 4.5, "m/s") == "4.50\N{NO-BREAK SPACE}m/s"
     assert text("quantity", None, "m/s") == "not known"
     assert text("estimate", 1.23456, 0.0123) == "1.235 ± 0.012"
     assert text("percent", 0.01) == "1.00 %"

@@ -4,7 +4,7 @@ import { ApiProblem, post } from "./api.js";
 import { h, replace } from "./dom.js";
 import { field, select } from "./forms.js";
 import { FieldMap } from "./map.js";
-import { labelled, significant } from "./numbers.js";
+import { exact, labelled, significant } from "./numbers.js";
 import { dash } from "./palette.js";
 import { axis, plot } from "./plots.js";
 
@@ -66,7 +66,7 @@ function drawMap(place, variables, { axes, functions }) {
     const at = (i, j) => values[(i * axes[1].length + j) * stride];
     replace(inner);
     new FieldMap(inner, {
-      rows: axes[1].map((value, j) => ({ label: significant(value), frequencies: axes[0], values: axes[0].map((_, i) => at(i, j)) })),
+      rows: axes[1].map((value, j) => ({ label: exact(value), frequencies: axes[0], values: axes[0].map((_, i) => at(i, j)) })),
       minimum: -most, maximum: most, log: false, height: 260, valueTitle: "value",
       caption: `Function ${functions[index].label} over ${variables[0].name} and, upwards, ${variables[1].name}.`,
       frequencyTitle: labelled(variables[0].name, variables[0].unit),

@@ -16,7 +16,20 @@ export function significant(value, digits = 3) {
 // The same with a unit, which may be "".
 export function quantity(value, unit, digits = 3) {
   const text = significant(value, digits);
-  return text === UNKNOWN || !unit ? text : `${text} ${unit}`;
+  return text === UNKNOWN || !unit ? text : `${text}\u00a0${unit}`;
+}
+
+// A number that was stated, with the digits that it was stated with; with its unit.
+export function exact(value, unit = "") {
+  if (value === null || value === undefined) return UNKNOWN;
+  const text = /e/.test(String(Number(value.toPrecision(6)))) ? significant(value, 4) : String(Number(value.toPrecision(6)));
+  return `${text.replace("-", "−")}${unit ? `\u00a0${unit}` : ""}`;
+}
+
+// A size in memory.
+export function bytes(count) {
+  if (count < 1024) return `${count}\u00a0bytes`;
+  return count < 1024 ** 2 ? quantity(count / 1024, "KiB") : quantity(count / 1024 ** 2, "MiB");
 }
 
 // Value ± standard deviation, the latter to two significant digits and the former to the same place.
@@ -44,8 +57,7 @@ export const radPerSecond = (inHertz) => 2 * Math.PI * inHertz;
 
 // An operating point in words: names and units come from the scheduling variables of the plant.
 export function pointLabel(point, variables) {
-  const digits = (value) => Number(value.toPrecision(4)).toString().replace("-", "−");
-  return point.map((value, i) => `${variables[i].name} = ${digits(value)} ${variables[i].unit}`.trim()).join(", ");
+  return point.map((value, i) => `${variables[i].name} = ${exact(value, variables[i].unit)}`).join(", ");
 }
 
 export function duration(seconds) {

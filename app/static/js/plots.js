@@ -48,7 +48,7 @@ export function linkAxes(charts, names = ["xaxis"]) {
 
 // An axis: logarithmic or linear, with a title.
 export function axis(title, { log = false, ...more } = {}) {
-  return { title: { text: title }, type: log ? "log" : "linear", ...(log ? { exponentformat: "power", dtick: 1 } : {}), ...more };
+  return { title: { text: title }, type: log ? "log" : "linear", ...(log ? { exponentformat: "power", nticks: 8 } : {}), ...more };
 }
 
 // At most `most` points of a long curve that look the same: the smallest and largest of each stretch.
@@ -90,7 +90,9 @@ function styled(layout, height) {
     dragmode: matchMedia("(pointer: fine)").matches ? "zoom" : false,
     ...layout,
   };
-  for (const name of Object.keys(result).filter((key) => /^[xy]axis\d*$/.test(key))) result[name] = { ...line, ...result[name] };
+  for (const name of Object.keys(result).filter((key) => /^[xy]axis\d*$/.test(key))) {
+    result[name] = { ...line, ...result[name], title: { standoff: 10, ...result[name].title } };
+  }
   return result;
 }
 

@@ -13,7 +13,7 @@ export function pluginField(label, entries, { pointer, kind = null, values = {},
   let readers = [];
   const draw = () => {
     const entry = entries.find((one) => one.kind === chooser.value);
-    hint.textContent = entry?.description ?? "";
+    hint.textContent = withoutSources(entry?.description ?? "");
     const options = (entry?.options ?? []).map((option) => optionField(option, pointer, values[entry.kind]?.[option.name]));
     readers = options.filter(Boolean);
     replace(place, readers.map((one) => one.element));
@@ -32,7 +32,7 @@ function optionField({ name, description, required, valueSchema }, pointer, give
   const made = inputFor(schema, start);
   if (!made) return null;
   const [input, read] = made;
-  const element = field(words(name), input, { hint: description, pointer: `${pointer}/${name}` });
+  const element = field(words(name), input, { hint: withoutSources(description), pointer: `${pointer}/${name}` });
   return { element, read: () => (read() === null && !required ? [] : [[name, read()]]) };
 }
 
@@ -53,6 +53,8 @@ const withReader = (input, read) => [input, () => read(input)];
 function simple(schema) {
   return schema.anyOf?.find((one) => one.type !== "null") ?? schema;
 }
+
+const withoutSources = (text) => text.replace(/ \[[A-Z]\w+\d{4}[a-z]?[^\]]*\]/g, "");
 
 // Names of the interface in words.
 export function words(name) {

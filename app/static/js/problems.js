@@ -20,9 +20,21 @@ export function showProblem(problem, { place, form = null }) {
   return first;
 }
 
+// What the service says of values that were left out or are none, in words for who fills in a form.
+const PLAINLY = [
+  [/^String should have at least 1 character/, "please fill this in"],
+  [/^Input should be a valid (number|integer).*/, "give a number"],
+  [/^Field required/, "please fill this in"],
+  [/^Input should be (a valid|an) (list|array).*/, "give numbers, separated by spaces"],
+];
+
+function plainly(detail) {
+  return PLAINLY.find(([pattern]) => pattern.test(detail))?.[1] ?? detail;
+}
+
 // A box with what went wrong.
 export function problemBox(problem, errors = problem.errors ?? [], marked = 0) {
-  const lines = errors.map((error) => h("p", {}, error.pointer ? h("code", {}, error.pointer) : null, ` ${error.detail}`));
+  const lines = errors.map((error) => h("p", {}, error.pointer ? h("code", {}, error.pointer) : null, ` ${plainly(error.detail)}`));
   const many = marked === 1 ? "One field needs a change." : `${marked} fields need a change.`;
   const told = marked && !lines.length ? many : lines.length ? null : problem.detail ?? problem.message;
   const box = message("problem", h("p", {}, h("strong", {}, problem.title ?? "Something went wrong")), told, lines);
@@ -50,7 +62,7 @@ function fieldOf(form, pointer) {
 
 function markField(field, detail) {
   const id = newId("problem");
-  const note = h("p", { class: "field-problem", id, "data-problem": "" }, detail);
+  const note = h("p", { class: "field-problem", id, "data-problem": "" }, plainly(detail));
   const inputs = field.matches("input, select, textarea") ? [field] : [...field.querySelectorAll("input, select, textarea")].slice(0, 1);
   for (const input of inputs) {
     input.setAttribute("aria-invalid", "true");

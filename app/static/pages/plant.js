@@ -3,7 +3,7 @@
 import { list } from "../js/api.js";
 import { context } from "../js/context.js";
 import { byId, facts, h, message, replace } from "../js/dom.js";
-import { counted, labelled, moment, significant } from "../js/numbers.js";
+import { counted, exact, labelled, moment } from "../js/numbers.js";
 import { page } from "../js/ready.js";
 import { plant } from "../js/shell.js";
 import { structureText } from "../js/structure_fields.js";
@@ -38,7 +38,7 @@ function about(found) {
       [String(found.parameterNames.length), "parameters"], [String(found.neededOperatingPoints), "operating points needed at least"]),
     h("p", {}, `Structure: ${structureText(found.structure)}. Described ${moment(found.createdAt)}.`),
     table({ caption: "Scheduling variables", columns: ["name", "unit", "least value", "largest value"], textColumns: 2,
-      rows: found.schedulingVariables.map((one) => [one.name, one.unit || "none", significant(one.minimum), significant(one.maximum)]) }),
+      rows: found.schedulingVariables.map((one) => [one.name, one.unit || "none", exact(one.minimum), exact(one.maximum)]) }),
   ];
 }
 

@@ -1,0 +1,59 @@
+// What a measurement file holds, as far as a browser can see it: the names of its columns or arrays.
+
+// What a column may be, as the service calls it and in words.
+export const LABELS = {
+  time: "time (s)", input: "input", output: "output", frequenciesRadPerSecond: "frequency (rad/s)", frequencyHz: "frequency (Hz)",
+  response: "response (complex)", responseRe: "response: real part", responseIm: "response: imaginary part", variance: "variance",
+};
+// Names that the service understands by itself, without case, spaces, dashes and underscores.
+const KNOWN = {
+  time: ["time", "t", "timeseconds", "times"], input: ["input", "u", "inputs"], output: ["output", "y", "outputs"],
+  frequenciesRadPerSecond: ["frequenciesradpersecond", "frequencyradpersecond", "frequencies", "frequency", "omega", "w"],
+  frequencyHz: ["frequencieshertz", "frequencyhertz", "frequencyhz", "freqhz", "frequencieshz", "hz"],
+};
+
+export const formatOf = (name) => /\.(csv|tsv|txt|npz|mat|json)$/i.exec(name)?.[1].toLowerCase() ?? null;
+
+// The names of columns (csv) or arrays (npz); null where they cannot be seen.
+export async function columnsOf(file) {
+  const format = formatOf(file.name);
+  if (["csv", "tsv", "txt"].includes(format)) return headOf(await file.slice(0, 65_536).text());
+  if (format === "npz") return membersOf(new DataView(await file.arrayBuffer()));
+  return null;
+}
+
+function headOf(text) {
+  const line = text.replace(/^\uFEFF/, "").trimStart().split(/\r?\n/, 1)[0];
+  const separator = [",", ";", "\t"].reduce((best, one) => (line.split(one).length > line.split(best).length ? one : best));
+  return line.split(separator).map((name) => name.trim().replace(/^"|"$/g, "")).filter(Boolean).slice(0, 100);
+}
+
+// The names in the central directory of a zip; none where it is damaged.
+function membersOf(data) {
+  const names = [];
+  let end = data.byteLength - 22;
+  while (end >= 0 && data.getUint32(end, true) !== 0x06054b50) end -= 1;
+  if (end < 0) return names;
+  let position = data.getUint32(end + 16, true);
+  while (position + 46 <= data.byteLength && data.getUint32(position, true) === 0x02014b50) {
+    const length = data.getUint16(position + 28, true);
+    const name = new TextDecoder().decode(new Uint8Array(data.buffer, position + 46, Math.min(length, data.byteLength - position - 46)));
+    names.push(name.replace(/\.npy$/, ""));
+    position += 46 + length + data.getUint16(position + 30, true) + data.getUint16(position + 32, true);
+  }
+  return names;
+}
+
+// The column that will be taken for a meaning by its name; "" when there is none.
+export function guess(meaning, columns) {
+  const plain = (name) => name.toLowerCase().replace(/[\s_\-()/]/g, "");
+  return columns.find((name) => KNOWN[meaning]?.includes(plain(name))) ?? "";
+}
+
+// An operating point in the name of a file, such as 5.5 in "noise_at_5.5.csv"; null when there is none.
+export function pointInName(name, variables) {
+  const numbers = name.replace(/\.\w+$/, "").match(/-?\d+(\.\d+)?/g)?.map(Number) ?? [];
+  const last = numbers.slice(-variables.length);
+  const inside = last.every((value, index) => value >= variables[index].minimum && value <= variables[index].maximum);
+  return last.length === variables.length && inside ? last : null;
+}

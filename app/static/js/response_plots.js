@@ -1,0 +1,54 @@
+// Frequency responses as gain and phase, with their standard deviations.
+
+import { hertz, labelled, significant } from "./numbers.js";
+import { axis, linkAxes, plot } from "./plots.js";
+import { symbol } from "./palette.js";
+
+// Gain and phase of a measured response, of every channel where there are several.
+export async function drawResponse(place, plant, data) {
+  const frequencies = data.frequenciesRadPerSecond.map(hertz);
+  const curves = channels(data, plant).map((one) => ({ ...one, gain: gains(one), phase: unwrapped(one) }));
+  const log = frequencies.some((one) => one > 0) && Math.max(...frequencies) / Math.min(...frequencies.filter((one) => one > 0)) > 20;
+  const trace = (values, deviations) => (one, i) => ({
+    x: frequencies, y: values(one), name: one.name, mode: "markers", marker: { size: 5, symbol: symbol(i) },
+    error_y: deviations(one) ? { type: "data", array: deviations(one), width: 0, thickness: 1 } : undefined,
+  });
+  const table = () => ({ columns: ["frequency (Hz)", ...curves.flatMap((one) => [`gain ${one.name}`, `phase (°) ${one.name}`])],
+    rows: frequencies.map((value, i) => [significant(value, 4), ...curves.flatMap((one) => [significant(one.gain[i], 4), significant(one.phase[i], 4)])]) });
+  const unit = plant.input ? [plant.output.unit, plant.input.unit].filter(Boolean).join("/") : "";
+  const gain = await plot(place, {
+    caption: `Gain${data.variance ? " with one standard deviation" : ""}.`, height: 300, table,
+    draw: () => ({ data: curves.map(trace((one) => one.gain, (one) => one.deviation)), layout: { xaxis: axis("frequency (Hz)", { log }), yaxis: axis(labelled("gain", unit), { log: true }), showlegend: curves.length > 1 } }),
+  });
+  const phase = await plot(place, {
+    caption: "Phase.", height: 260, table,
+    draw: () => ({ data: curves.map(trace((one) => one.phase, (one) => one.deviation?.map((value, i) => (180 / Math.PI) * Math.min(value / one.gain[i], 1)))), layout: { xaxis: axis("frequency (Hz)", { log }), yaxis: axis("phase (°)"), showlegend: false } }),
+  });
+  linkAxes([gain, phase]);
+}
+
+function channels({ kind, response: { re, im }, variance }, plant) {
+  const deviation = (values) => values?.map((one) => Math.sqrt(one / 2));
+  if (kind === "frequencyResponse") return [{ name: "", re, im, deviation: deviation(variance) }];
+  const at = (matrices, i, j) => matrices?.map((matrix) => matrix[i][j]);
+  return re[0].flatMap((row, i) => row.map((_, j) => ({
+    name: `${plant.outputs?.[i].name ?? "output"} / ${plant.inputs?.[j].name ?? "input"}`,
+    re: at(re, i, j), im: at(im, i, j), deviation: deviation(at(variance, i, j)),
+  })));
+}
+
+export function gains({ re, im }) {
+  return re.map((real, i) => Math.hypot(real, im[i]));
+}
+
+// Phase in degrees without jumps.
+export function unwrapped({ re, im }) {
+  let turns = 0;
+  let before = null;
+  return re.map((real, i) => {
+    const angle = (180 / Math.PI) * Math.atan2(im[i], real);
+    if (before !== null && Math.abs(angle - before) > 180) turns += angle < before ? 1 : -1;
+    before = angle;
+    return angle + 360 * turns;
+  });
+}
