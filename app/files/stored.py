@@ -16,6 +16,7 @@ MEDIA_TYPES = {
     "npz": "application/octet-stream",
     "mat": "application/octet-stream",
     "wav": "audio/wav",
+    "html": "text/html",
 }
 
 

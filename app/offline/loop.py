@@ -81,11 +81,12 @@ class Loop:
         """All of it for a report."""
         from app.report.chain.documents import Chain
 
+        measured = {one.id: kept_measurement(one, self.place.arrays.get(arrays)) for one, arrays in self.experiments}
         return Chain(
             self.plant,
             tuple(versions),
             tuple(experiment for experiment, _ in self.experiments),
-            {one.id: kept_measurement(one, self.place.arrays.get(arrays)) for one, arrays in self.experiments},
+            lambda one: measured[one.id],
             designed,
             tuple(compared),
             tuple(diagnosed),

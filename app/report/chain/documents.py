@@ -1,6 +1,6 @@
 """What a report of the whole chain is made from: the documents of the service and the arrays they name."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -37,13 +37,13 @@ class Compared:
 class Chain:
     """Versions of a model, oldest first, with what they were made from and held against.
 
-    `measurements` by the identifier of their experiment; `designs` in the order in which they were made.
+    `measurement` fetches what was measured; `designs` in the order in which they were made.
     """
 
     plant: Plant
     versions: tuple[Model, ...]
     experiments: tuple[Experiment, ...] = ()
-    measurements: Mapping[str, Measurement] | None = None
+    measurement: Callable[[Experiment], Measurement] | None = None
     designs: tuple[Design, ...] = ()
     comparisons: tuple[Compared, ...] = ()
     diagnoses: tuple[Diagnosis, ...] = ()

@@ -116,11 +116,12 @@ def side_by_side_plots(chain: Chain) -> list[Plot]:
     chosen = sorted(chain.experiments, key=lambda one: one.id in fitted)
     plots: list[Plot] = []
     for one in chosen:
-        measured = (chain.measurements or {}).get(one.id)
-        if measured is None or not versions or len(plots) == 3:
+        if chain.measurement is None or not versions or len(plots) == 3:
+            break
+        if one.kind not in ("timeRecord", "frequencyResponse"):
             continue
         try:
-            batch = gather([measured])[0]
+            batch = gather([chain.measurement(one)])[0]
             plots.append(side_by_side(versions, batch, chain.labels[one.id], chain.axes))
         except MisuseError:
             continue
