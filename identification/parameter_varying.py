@@ -9,11 +9,11 @@ from numpy.typing import ArrayLike
 from identification.arrays import BoolArray, ComplexArray, FloatArray, finite_floats
 from identification.errors import ShapeError
 from identification.scheduling import ParameterDependence, ProductBasis, SchedulingVariable
-from identification.state_space import StateSpace, require_matching
+from identification.state_space import MatrixSizes, StateSpace, require_matching
 
 
 @dataclass(frozen=True, eq=False)
-class ParameterVaryingStateSpace:
+class ParameterVaryingStateSpace(MatrixSizes):
     """A state-space model with matrices that are sums over functions of the scheduling variables p (s,).
 
         A(p) = Σ_j A_j f_j(p),  and B(p), C(p), D(p) alike                                  [Kergus2019, (2), (3)]
@@ -50,21 +50,6 @@ class ParameterVaryingStateSpace:
         """The dependence of A, B, C and D on the scheduling variables, in this order."""
         assert not isinstance(self.bases, ProductBasis)
         return ParameterDependence(self.variables, self.bases)
-
-    @property
-    def order(self) -> int:
-        """n."""
-        return int(self.a.shape[-1])
-
-    @property
-    def input_count(self) -> int:
-        """n_u."""
-        return int(self.b.shape[-1])
-
-    @property
-    def output_count(self) -> int:
-        """n_y."""
-        return int(self.c.shape[-2])
 
     def at(self, points: ArrayLike) -> StateSpace:
         """The systems at the operating points (M, s), as one array (M,); raises RangeError outside the range."""

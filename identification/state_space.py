@@ -11,8 +11,31 @@ from identification.errors import MisuseError, RangeError, ShapeError
 from identification.resolvent import resolvent
 
 
+class MatrixSizes:
+    """n, n_u and n_y of state-space matrices: a (…, n, n), b (…, n, n_u), c (…, n_y, n)."""
+
+    a: FloatArray
+    b: FloatArray
+    c: FloatArray
+
+    @property
+    def order(self) -> int:
+        """n."""
+        return int(self.a.shape[-1])
+
+    @property
+    def input_count(self) -> int:
+        """n_u."""
+        return int(self.b.shape[-1])
+
+    @property
+    def output_count(self) -> int:
+        """n_y."""
+        return int(self.c.shape[-2])
+
+
 @dataclass(frozen=True, eq=False)
-class StateSpace:
+class StateSpace(MatrixSizes):
     """A linear time-invariant system of order n with n_u inputs and n_y outputs, or an array (…) of them.
 
         ẋ or x(t + T) = A x + B u,   y = C x + D u,   G = D + C (zI − A)⁻¹ B            [Akcay2008, Problem Formulation]
@@ -34,21 +57,6 @@ class StateSpace:
         require_matching(self.a, self.b, self.c, self.d)
         if self.sample_time is not None and not (np.isfinite(self.sample_time) and self.sample_time > 0):
             raise RangeError(f"the sample time is {self.sample_time}; it must be positive", "sample_time")
-
-    @property
-    def order(self) -> int:
-        """n."""
-        return int(self.a.shape[-1])
-
-    @property
-    def input_count(self) -> int:
-        """n_u."""
-        return int(self.b.shape[-1])
-
-    @property
-    def output_count(self) -> int:
-        """n_y."""
-        return int(self.c.shape[-2])
 
     def variable(self, omega: ArrayLike) -> ComplexArray:
         """z = e^{jωT}, or jω in continuous time, at ω (F,) in rad/s."""

@@ -6,6 +6,7 @@ from typing import Literal
 import numpy as np
 
 from identification.arrays import ComplexArray, FloatArray
+from identification.subspace.polynomials import OrthonormalPolynomials, by_recursion
 
 Family = Literal["powers", "orthonormal"]
 
@@ -30,31 +31,14 @@ class ShiftBasis:
 
     def evaluate(self, z: ComplexArray) -> ComplexArray:
         """The polynomials at z (F,), as (q, F)."""
-        values = np.ones((self.size, len(z)), dtype=np.complex128)
-        for k in range(self.size - 1):
-            rest = z * values[k] - self.shift[: k + 1, k] @ values[: k + 1]
-            values[k + 1] = rest / self.shift[k + 1, k]
-        return values
+        return by_recursion(self.shift, z)
 
 
 def shift_basis(z: ComplexArray, size: int, family: Family) -> ShiftBasis:
     """The first `size` powers, or the polynomials orthonormal over the points z (F,) and their conjugates.
 
-    The latter by Arnoldi's process in the inner product Re(uᴴv)/F, orthogonalised twice. Needs more points than
-    half of `size`.
+    Raises NotIdentifiableError where the points cannot tell the latter apart.
     """
-    shift = np.eye(size, size - 1, -1)
     if family == "powers":
-        return ShiftBasis(shift)
-    stacked = np.concatenate([z, z.conj()])
-    values = np.ones((size, len(stacked)), dtype=np.complex128)
-    for k in range(size - 1):
-        rest = stacked * values[k]
-        shift[:, k] = 0.0
-        for _ in range(2):
-            part = (values[: k + 1].conj() @ rest).real / len(stacked)
-            shift[: k + 1, k] += part
-            rest = rest - part @ values[: k + 1]
-        shift[k + 1, k] = np.linalg.norm(rest) / np.sqrt(len(stacked))
-        values[k + 1] = rest / shift[k + 1, k]
-    return ShiftBasis(shift)
+        return ShiftBasis(np.eye(size, size - 1, -1))
+    return ShiftBasis(OrthonormalPolynomials.on(z, size).shift[:, :-1])
