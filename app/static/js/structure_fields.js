@@ -17,17 +17,18 @@ const ORDERS = {
   ],
 };
 
-// {element, value(), coefficients()}; `onChange` when anything has changed.
-export function structureFields(onChange) {
-  const domain = select([["continuous", "continuous time"], ["discrete", "discrete time"]], "continuous");
+// {element, value(), coefficients()}; `onChange` when anything has changed; `given`: a structure to begin with.
+export function structureFields(onChange, given = null) {
+  const domain = select([["continuous", "continuous time"], ["discrete", "discrete time"]], given?.timeDomain ?? "continuous");
   const place = h("div", { class: "fields wide" });
   let inputs = {};
+  const first = (name, start) => given?.[name] ?? start;
   const draw = () => {
-    const orders = ORDERS[domain.value].map(([name, label, hint, start]) => [name, label, hint, integerInput(start, { min: 0 })]);
+    const orders = ORDERS[domain.value].map(([name, label, hint, start]) => [name, label, hint, integerInput(first(name, start), { min: 0 })]);
     const scale = domain.value === "discrete"
-      ? ["sampleTimeSeconds", "sample time (s)", "of the records and of the model", numberInput(1, { min: 0 })]
-      : ["frequencyScaleRadPerSecond", "frequency scale (rad/s)", "a frequency in the middle of the data; coefficients are scaled by it", numberInput(1, { min: 0 })];
-    const delay = ["delay", "estimate a delay", "a further coefficient tau, in seconds", checkbox()];
+      ? ["sampleTimeSeconds", "sample time (s)", "of the records and of the model", numberInput(first("sampleTimeSeconds", 1), { min: 0 })]
+      : ["frequencyScaleRadPerSecond", "frequency scale (rad/s)", "a frequency in the middle of the data; coefficients are scaled by it", numberInput(first("frequencyScaleRadPerSecond", 1), { min: 0 })];
+    const delay = ["delay", "estimate a delay", "a further coefficient tau, in seconds", checkbox(first("delay", false))];
     const all = [...orders, scale, delay];
     inputs = Object.fromEntries(all.map(([name, , , input]) => [name, input]));
     replace(place, all.map(([name, label, hint, input]) => field(label, input, { hint, pointer: `/structure/${name}` })));

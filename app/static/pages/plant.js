@@ -49,7 +49,7 @@ function card([, path, name, purpose], count) {
 
 function next([experiments, models, comparisons, diagnoses]) {
   const step = experiments === 0 ? ["experiments", "bring in what you have measured"]
-    : models === 0 ? ["models", "identify a model"]
+    : models === 0 ? ["identify", "identify a model"]
       : comparisons === 0 ? ["compare", "hold the model against the measurements"]
         : diagnoses === 0 ? ["diagnose", "see what is missing"]
           : ["history", "see how the error has fallen"];
