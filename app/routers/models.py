@@ -8,9 +8,10 @@ from app.dependencies import ContainerDependency, Cursor, IdempotencyKey, Limit,
 from app.schemas.extensions import ExtensionRequest
 from app.schemas.jobs import Job
 from app.schemas.models import Model, ModelFrequencyResponse, ModelList, ModelRequest, StatedModelRequest
+from app.schemas.simulations import SimulationRequest
 from app.schemas.state_space import StateSpaceModelRequest
 from app.schemas.varying import VaryingModelRequest
-from app.services import extensions, model_responses, models, state_space_models, varying_models
+from app.services import extensions, model_responses, models, simulations, state_space_models, varying_models
 from app.services.jobs import accepted
 
 router = APIRouter(prefix="/models", tags=["models"])
@@ -77,6 +78,18 @@ def create_extension(
 ) -> Job:
     """Add a physical effect to a model; makes a new version of it beside the old one."""
     return accepted(extensions.submit(container, modelId, body, key), response)
+
+
+@router.post("/{modelId}/simulations", status_code=202)
+def create_simulation(
+    modelId: str,
+    body: SimulationRequest,
+    container: ContainerDependency,
+    response: Response,
+    key: IdempotencyKey = None,
+) -> Job:
+    """Simulate a model in discrete time along p(t), from rest, e.g. as a dry run of an experiment."""
+    return accepted(simulations.submit(container, modelId, body, key), response)
 
 
 @router.get("/{modelId}/frequency-response")

@@ -1,0 +1,59 @@
+"""Simulations along p(t): models of all kinds, and their outputs as documents."""
+
+import numpy as np
+
+from app.arrays import finite_or_none
+from app.conversion.models import kept_model
+from app.conversion.plants import is_state_space, scheduling_variables
+from app.conversion.state_space import kept_state_space
+from app.conversion.varying_models import kept_estimate
+from app.schemas.experiments import SchedulingRange
+from app.schemas.models import Model
+from app.schemas.plants import Plant
+from app.schemas.simulations import SimulatedOutput
+from identification.along import Simulation, simulate_affine, simulate_rational, simulate_state_space
+from identification.arrays import FloatArray
+from identification.errors import MisuseError
+
+FROZEN = (
+    "The model was identified at operating points that were held still; its coefficients follow p(t) at once, and what"
+    " fast changes of p do beyond that is not in it."
+)
+NO_BAND = "The model has no covariance, so there is no band."
+NO_BAND_ALONG = "The band of this kind of model is known at operating points only, not along p(t)."
+
+
+def simulated(model: Model, plant: Plant, u: FloatArray, p: FloatArray) -> tuple[Simulation, list[str]]:
+    """The simulation, and what it leaves out; raises MisuseError."""
+    unknown = [] if model.covariance is not None else [NO_BAND]
+    if model.varying is not None:
+        return simulate_affine(kept_estimate(model, plant), u, p), unknown
+    if is_state_space(model.structure):
+        frozen = kept_state_space(model, plant)
+        if frozen is None:
+            raise MisuseError("this model is one of single operating points only; it cannot follow p(t)", "model")
+        return simulate_state_space(frozen, u, p), [FROZEN, *(unknown or [NO_BAND_ALONG])]
+    found = simulate_rational(kept_model(model, plant), u[:, 0], p, model.covariance is not None)
+    return found, [FROZEN, *unknown]
+
+
+def output_documents(found: Simulation) -> list[SimulatedOutput]:
+    """Each output in short."""
+    deviations = [None] * found.output.shape[1] if found.deviation is None else list(found.deviation.T)
+    return [
+        SimulatedOutput(
+            minimum=float(y.min()),
+            maximum=float(y.max()),
+            root_mean_square=float(np.sqrt(np.mean(y**2))),
+            deviation=None if deviation is None else finite_or_none(float(np.sqrt(np.mean(deviation**2)))),
+        )
+        for y, deviation in zip(found.output.T, deviations, strict=True)
+    ]
+
+
+def range_documents(plant: Plant, scheduling: FloatArray) -> list[SchedulingRange]:
+    """Where each scheduling signal (N, s) ran."""
+    return [
+        SchedulingRange(name=one.name, unit=one.unit, minimum=float(p.min()), maximum=float(p.max()))
+        for one, p in zip(scheduling_variables(plant), scheduling.T, strict=True)
+    ]
