@@ -1,10 +1,13 @@
-"""A mass on a spring whose stiffness depends on p, integrated by Runge–Kutta, with something hidden in it."""
+"""A mass on a spring whose stiffness depends on p, with something hidden in it, and a store that empties.
+
+Both are integrated by Runge–Kutta.
+"""
 
 from dataclasses import dataclass, field
 
 import numpy as np
 
-from benchmarks.virtual_bench.hidden import HIDDEN, Hidden
+from benchmarks.virtual_bench.hidden import HIDDEN
 from identification.signals import TimeRecord
 
 PERIOD, STEPS = 512, 4
@@ -16,6 +19,11 @@ DAMPING = 1.8
 def stiffness(p):
     """What the model knows: k(p) = 64 + 28 p for p = −1 … 1."""
     return 64.0 + 28.0 * p
+
+
+def rate(p):
+    """What the model of the first order knows: a(p) = 3 + 1.4 p."""
+    return 3.0 + 1.4 * p
 
 
 @dataclass
@@ -50,39 +58,47 @@ def _played(phasors, lines):
 
 @dataclass
 class Bench:
-    """The bench with a hidden effect of some strength (0: nothing hidden); several may be hidden at once."""
+    """The bench with hidden effects of some strength; several may be hidden at once."""
 
     hidden: tuple[tuple[str, float], ...] = field(default=())
 
     def steady(self, done: Experiments, periods: int = 2) -> np.ndarray:
         """One noise-free period of the output, (M, PERIOD), after `periods` − 1 periods of settling."""
         parts = [(HIDDEN[name], strength) for name, strength in self.hidden]
-        y, inputs = _integrate(done, parts, periods)
+        k, c, b = stiffness(done.points), np.full(len(done.points), DAMPING), np.ones(len(done.points))
+        u = done.inputs
         for hidden, strength in parts:
-            y = hidden.output(y, strength, done, inputs)
+            k, c, b = hidden.coefficients(k, c, b, strength, done.points)
+            u = hidden.actuator(u, strength, done)
+
+        def slope(s, i):
+            x, v = s[0], s[1]
+            force = b * u[:, i] - k * x - c * v
+            extra = []
+            for (hidden, strength), z in zip(parts, s[2:], strict=True):
+                force = force - strength * hidden.force(x, v, z)
+                extra.append(hidden.memory(x, v, z, strength))
+            return [v, force, *extra]
+
+        y = _recorded(slope, [0.0 * k for _ in range(2 + len(parts))], periods)
+        for hidden, strength in parts:
+            y = hidden.output(y, strength, done, u)
         return y
 
 
-def _integrate(done: Experiments, parts: list[tuple[Hidden, float]], periods: int):
-    k, c, b = stiffness(done.points), np.full(len(done.points), DAMPING), np.ones(len(done.points))
-    u = done.inputs
-    for hidden, strength in parts:
-        k, c, b = hidden.coefficients(k, c, b, strength, done.points)
-        u = hidden.actuator(u, strength, done)
-    state = [np.zeros_like(k), np.zeros_like(k), *(np.zeros_like(k) for _ in parts)]
-    h = SAMPLE_TIME / STEPS
+@dataclass
+class FirstOrderBench:
+    """A store that empties at a rate which depends on p, x′ = u − a(p) x, with nothing hidden."""
 
-    def slope(s, i):
-        x, v = s[0], s[1]
-        force = b * u[:, i] - k * x - c * v
-        extra = []
-        for (hidden, strength), z in zip(parts, s[2:], strict=True):
-            force = force - strength * hidden.force(x, v, z)
-            extra.append(hidden.memory(x, v, z, strength))
-        return [v, force, *extra]
+    def steady(self, done: Experiments, periods: int = 2) -> np.ndarray:
+        """One noise-free period of the output, (M, PERIOD)."""
+        a = rate(done.points)
+        return _recorded(lambda s, i: [done.inputs[:, i] - a * s[0]], [0.0 * a], periods)
 
-    recorded = []
-    grid = u.shape[1]
+
+def _recorded(slope, state, periods):
+    """The first state at the samples of the last of `periods` periods, by Runge–Kutta's method of fourth order."""
+    h, grid, recorded = SAMPLE_TIME / STEPS, 2 * STEPS * PERIOD, []
     for n in range(periods * PERIOD * STEPS):
         i = 2 * n % grid
         if n >= (periods - 1) * PERIOD * STEPS and n % STEPS == 0:
@@ -92,7 +108,7 @@ def _integrate(done: Experiments, parts: list[tuple[Hidden, float]], periods: in
         k3 = slope([s + h / 2 * d for s, d in zip(state, k2, strict=True)], i + 1)
         k4 = slope([s + h * d for s, d in zip(state, k3, strict=True)], (i + 2) % grid)
         state = [s + h / 6 * (a + 2 * p + 2 * q + d) for s, a, p, q, d in zip(state, k1, k2, k3, k4, strict=True)]
-    return np.stack(recorded, axis=1), u
+    return np.stack(recorded, axis=1)
 
 
 def noisy(y, done: Experiments, share, generator, periods=4, colour=0.0, heavy=False, spread=1.0):

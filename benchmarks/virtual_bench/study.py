@@ -17,10 +17,16 @@ from identification.extension.rows import Rows, plant_tangents
 from identification.models import LpvModel, RationalStructure
 from identification.scheduling import ParameterDependence, ProductBasis, SchedulingVariable
 
-DEPENDENCE = ParameterDependence(
-    (SchedulingVariable("p", "1", -1.0, 1.0),), tuple(ProductBasis((Polynomial(n),)) for n in (0, 1, 0))
-)
-MODEL = ExtendedModel(LpvModel(RationalStructure(2, 0), DEPENDENCE, np.array([1.8, 64.0, 28.0, 1.0]), np.eye(4), 1.0))
+P = SchedulingVariable("p", "1", -1.0, 1.0)
+
+
+def _model(order, theta, degrees):
+    dependence = ParameterDependence((P,), tuple(ProductBasis((Polynomial(n),)) for n in degrees))
+    return ExtendedModel(LpvModel(RationalStructure(order, 0), dependence, np.array(theta), np.eye(len(theta)), 1.0))
+
+
+MODEL = _model(2, [1.8, 64.0, 28.0, 1.0], (0, 1, 0))
+FIRST_ORDER = _model(1, [3.0, 1.4, 1.0], (1, 0))
 STRENGTHS = Path(__file__).with_name("strengths.json")
 MISFIT = 0.03
 
@@ -29,6 +35,11 @@ def effects(done):
     """The library, with what was logged beside the operating point."""
     logged = tuple(float(x) for x in np.sin(7.0 * np.arange(len(done.points))))
     return tuple(SecondVariable(logged) if one.kind == "second_variable" else one for one in library())
+
+
+def design(points=7):
+    """The experiments of the studies: two levels at each operating point."""
+    return experiments(np.random.default_rng(2024), points=points)
 
 
 def misfit(done, kind, strength):
@@ -62,7 +73,7 @@ def strengths():
     """The calibrated strengths, from the file beside this module or computed anew."""
     if STRENGTHS.exists():
         return json.loads(STRENGTHS.read_text())
-    done = experiments(np.random.default_rng(2024))
+    done = design()
     found = {kind: calibrated(done, kind) for kind in HIDDEN}
     STRENGTHS.write_text(json.dumps(found, indent=1) + "\n")
     return found
@@ -71,7 +82,7 @@ def strengths():
 @cache
 def steady(kinds):
     """Design of the experiments and the noise-free output with these kinds hidden."""
-    done = experiments(np.random.default_rng(2024))
+    done = design()
     return done, Bench(tuple((kind, strengths()[kind]) for kind in kinds)).steady(done)
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from identification.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 
 EXCITED, ODD, EVEN = 0, 1, 2
+NEGLIGIBLE, SMALLEST = 0.02, 0.2
 CLASS_NAMES = ("excited", "unexcited odd", "unexcited even")
 
 
@@ -23,6 +24,7 @@ class Batch:
     lines that are not compared; `classes` (M, K) of EXCITED, ODD, EVEN; `freedom` (K,) real degrees of freedom of
     each σ̂², `raw_freedom` those that one line brings by itself (infinite where σ is known exactly); windows of
     2 `half_width` + 1 lines were pooled. `signals` (M, L) the input over one period, None for frequency responses.
+    `ends` (M, 2, L): what correlated noise at the ends of a record does to the mean period, see `noise.NoiseOfMean`.
     `scaled`: False when only the ratios of the variances are known. `members`: places in the user's list. `logged`:
     quantities (M,) that were written down beside the scheduling variables, by their names.
     """
@@ -39,6 +41,7 @@ class Batch:
     freedom: float = np.inf
     raw_freedom: float = np.inf
     half_width: int = 0
+    ends: FloatArray | None = None
     scaled: bool = True
     between: tuple[FloatArray, ...] = field(default=())
     logged: Mapping[str, FloatArray] = field(default_factory=dict)
@@ -74,12 +77,36 @@ class Batch:
         return int(self.compared.sum())
 
     def whiten(self, spectra: ComplexArray) -> FloatArray:
-        """Spectra (…, M, K) as rows of unit variance (…, M·2·K): real parts, then imaginary parts, of each record."""
+        """Spectra (…, M, K) as uncorrelated rows of unit variance (…, M·2·K): real, then imaginary parts by record."""
+        rows = self._weighted(spectra)
+        if self._jumps is not None:
+            directions, factors = self._jumps
+            part = np.einsum("...mr,mir->...mi", rows, directions) * factors
+            rows += np.einsum("...mi,mir->...mr", part, directions)
+        return rows.reshape(*spectra.shape[:-2], -1)
+
+    def _weighted(self, spectra: ComplexArray) -> FloatArray:
         rows = np.empty((*spectra.shape[:-1], 2, spectra.shape[-1]))
         rows[..., 0, :] = spectra.real
         rows[..., 1, :] = spectra.imag
         rows *= self.weights_of_rows
-        return rows.reshape(*spectra.shape[:-2], -1)
+        return rows.reshape(*spectra.shape[:-1], -1)
+
+    @cached_property
+    def _jumps(self) -> tuple[FloatArray, FloatArray] | None:
+        """Unit directions q (M, 2, 2K) in which weighted noise has the variance v, and v^−½ − 1 (M, 2).
+
+        −(ℓ ℓ'ᵀ + ℓ' ℓᵀ) = ½ (ℓ − ℓ')(ℓ − ℓ')ᵀ − ½ (ℓ + ℓ')(ℓ + ℓ')ᵀ; None where noise is nearly white.
+        """
+        if self.ends is None:
+            return None
+        jumps = np.stack([self.ends[:, 0] - self.ends[:, 1], self.ends[:, 0] + self.ends[:, 1]]) * np.sqrt(0.5)
+        rows = np.moveaxis(self._weighted(self.spectrum(jumps)), 0, 1)
+        excess = np.sum(rows**2, axis=-1)
+        if np.max(excess) < NEGLIGIBLE:
+            return None
+        variance = np.maximum(1 + excess * np.array([1.0, -1.0]), SMALLEST)
+        return rows / np.sqrt(np.maximum(excess, np.finfo(float).tiny))[..., None], variance**-0.5 - 1
 
     @cached_property
     def measured(self) -> FloatArray:

@@ -1,13 +1,17 @@
 """From records and frequency responses to batches of spectra with the variances of their noise."""
 
+<<<<<<< HEAD
 from collections.abc import Mapping, Sequence
+=======
+from collections.abc import Sequence
+>>>>>>> caecdbe (Jumps of coloured noise at the ends of the mean period; diagnosis studies with pictures, first-order bench; hysteresis no longer imitates Coulomb friction)
 from dataclasses import replace
 
 import numpy as np
 
 from identification.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from identification.comparison.batch import EVEN, EXCITED, ODD, Batch
-from identification.comparison.noise import variance_of_mean
+from identification.comparison.noise import NoiseOfMean, noise_of_mean
 from identification.errors import MisuseError
 from identification.response_tests import real_lines
 from identification.signals import FrequencyResponse, Measurement, TimeRecord
@@ -60,6 +64,7 @@ def _joined(group: list[Batch]) -> Batch:
         for name in ("points", "inputs", "outputs", "variances", "classes", "members")
     }
     signals = None if first.signals is None else np.concatenate([p.signals for p in group if p.signals is not None])
+    ends = None if first.ends is None else np.concatenate([part.ends for part in group if part.ends is not None])
     between = tuple(b for part in group for b in part.between)
     return Batch(
         omega=first.omega,
@@ -68,6 +73,7 @@ def _joined(group: list[Batch]) -> Batch:
         freedom=first.freedom,
         raw_freedom=first.raw_freedom,
         half_width=first.half_width,
+        ends=ends,
         scaled=first.scaled,
         between=between,
         logged={name: np.concatenate([part.logged[name] for part in group]) for name in first.logged},
@@ -121,7 +127,8 @@ def _of_periodic(m: int, record: TimeRecord, mean_value: bool) -> Batch:
     count = len(y)
     excited = excited_lines(u, estimator.threshold)
     omega = np.asarray(2 * np.pi * np.fft.rfftfreq(period, record.sample_time), dtype=np.float64)
-    variances, freedom, half_width = _noise(u, y, excited, real_lines(omega, record.sample_time))
+    noise = _noise(u, y, excited, real_lines(omega, record.sample_time))
+    variances = noise.variance
     if not mean_value:
         variances[0] = np.inf
     mean_input = np.where(excited, u.mean(axis=0), 0.0)
@@ -130,24 +137,25 @@ def _of_periodic(m: int, record: TimeRecord, mean_value: bool) -> Batch:
         omega=omega,
         inputs=mean_input[None],
         outputs=y.mean(axis=0)[None],
-        variances=np.asarray(variances[None], dtype=np.float64),
+        variances=variances[None],
         classes=_classes(excited)[None],
         members=np.array([m]),
         signals=np.fft.irfft(mean_input * period, n=period)[None],
         sample_time=record.sample_time,
-        freedom=freedom,
+        freedom=noise.freedom,
         raw_freedom=2.0 * (count - 1),
-        half_width=half_width,
+        half_width=noise.half_width,
+        ends=noise.ends[None],
         between=(between_harmonics(record, count),),
     )
 
 
-def _noise(u: ComplexArray, y: ComplexArray, excited: BoolArray, real: BoolArray) -> tuple[FloatArray, float, int]:
-    """The variance of the mean spectrum from how E = Y − Ĝ U differs: noise on the input counts where it is excited."""
+def _noise(u: ComplexArray, y: ComplexArray, excited: BoolArray, real: BoolArray) -> NoiseOfMean:
+    """Of the mean of E = Y − Ĝ U: noise on the input counts where it is excited."""
     ratio = np.where(excited, y.mean(axis=0) / np.where(excited, u.mean(axis=0), 1.0), 0.0)
-    variance, freedom, half_width = variance_of_mean(y - ratio * u, real)
+    found = noise_of_mean(y - ratio * u, real)
     smallest = 1e-26 * float(np.mean(abs(y) ** 2)) + float(np.finfo(np.float64).tiny)
-    return np.maximum(variance, smallest), freedom, half_width
+    return replace(found, variance=np.maximum(found.variance, smallest))
 
 
 def _classes(excited: BoolArray) -> IntArray:

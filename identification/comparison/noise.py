@@ -1,6 +1,7 @@
 """The variance of the mean spectrum of a periodic record, and how well it is known."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import solve_toeplitz
@@ -13,15 +14,29 @@ ORDER, NUMBERS_EACH = 4, 192
 FINER = 4
 
 
-def variance_of_mean(errors: ComplexArray, real: BoolArray) -> tuple[FloatArray, float, int]:
-    """From the errors E (P, K) of P periods at every line: σ̂² (K,), the real degrees of freedom each has, and w.
+@dataclass(frozen=True, eq=False)
+class NoiseOfMean:
+    """Noise of the mean spectrum of P periods, as it is estimated.
 
-        σ̂_k² = M_k · mean over 2w + 1 lines of s_k'/D_k',   s_k = Σ_p |E_kp − Ē_k|²/(P(P − 1)),   2(P − 1)(2w + 1)
+    `variance` σ̂² (K,), at real lines twice that of the real number; `freedom` real degrees of freedom of each;
+    `half_width` w; `ends` (2, N), ℓ and ℓ': what correlated noise at the ends of the record adds to the covariance of
+    the mean period, −(ℓ ℓ'ᵀ + ℓ' ℓᵀ).
+    """
 
-    [PintelonSchoukens2012, Section 2.5] with the shape of the spectrum divided out before lines are pooled: D_k and M_k
-    are what an autoregression fitted to s gives for E s_k and E|Ē_k|², with the leakage of one period and of the whole
-    record. Without that a steep spectrum is smeared over the window. At `real` lines σ̂² is twice the variance of the
-    real number.
+    variance: FloatArray
+    freedom: float
+    half_width: int
+    ends: FloatArray
+
+
+def noise_of_mean(errors: ComplexArray, real: BoolArray) -> NoiseOfMean:
+    """From the errors E (P, K) of P periods at every line.
+
+        σ̂_k² = S_k · mean over 2w + 1 lines of s_k'/D_k',   s_k = Σ_p |E_kp − Ē_k|²/(P(P − 1)),   2(P − 1)(2w + 1)
+
+    [PintelonSchoukens2012, Section 2.5] with the shape of the spectrum divided out before lines are pooled: S is an
+    autoregression fitted to s, D what s then is on average with the leakage of one period and of the whole record.
+    Without that a steep spectrum is smeared over the window.
     """
     count, lines = errors.shape
     spread = np.var(errors, axis=0, ddof=1) / count
@@ -29,25 +44,27 @@ def variance_of_mean(errors: ComplexArray, real: BoolArray) -> tuple[FloatArray,
     if real[-1]:
         spread[-1] = spread[-2]
     half_width = min(NEIGHBOURS, (int(np.sum(~real)) - 1) // 2)
-    between, of_mean = _expected(spread, 2 * lines - (2 if real[-1] else 1), count)
-    variance = of_mean * pooled(spread / between, half_width, real) * np.where(real, 2.0, 1.0)
-    return variance, 2.0 * (count - 1) * (2 * half_width + 1), half_width
+    period = 2 * lines - (2 if real[-1] else 1)
+    covariance = _autocovariance(spread, period, count)
+    one, whole = (_periodogram(covariance[:length])[:: length // period] for length in (period, len(covariance)))
+    spectrum = _circulant(covariance, period, count)
+    ratios = spread * (count - 1) / (one - whole)
+    ends = _ends(covariance[:period]) * np.sqrt(np.mean(ratios)) / count
+    variance = spectrum * pooled(ratios, half_width, real) * np.where(real, 2.0, 1.0)
+    return NoiseOfMean(variance, 2.0 * (count - 1) * (2 * half_width + 1), half_width, ends)
 
 
-def _expected(spread: FloatArray, period: int, count: int) -> tuple[FloatArray, FloatArray]:
-    """D and M (K,) up to a common factor, for noise with the spectrum of an autoregression fitted to s (K,)."""
+def _autocovariance(spread: FloatArray, period: int, count: int) -> FloatArray:
+    """r (P·N,) up to a factor, of an autoregression that has the spectrum s (K,); white where there is little of it."""
     order = min(ORDER, len(spread) * (count - 1) // NUMBERS_EACH)
-    covariance = np.fft.irfft(spread, n=period)[: order + 1]
-    if order == 0 or covariance[0] <= 0:
-        return np.ones_like(spread), np.ones_like(spread)
-    covariance[0] *= 1 + 1e-9
-    polynomial = np.concatenate([[1.0], -solve_toeplitz(covariance[:order], covariance[1:])])
+    found = np.fft.irfft(spread, n=period)[: order + 1]
     whole = period * count
+    if order == 0 or found[0] <= 0:
+        return np.asarray(np.eye(1, whole)[0])
+    found[0] *= 1 + 1e-9
+    polynomial = np.concatenate([[1.0], -solve_toeplitz(found[:order], found[1:])])
     white = abs(np.fft.rfft(polynomial, FINER * whole)) ** 2
-    covariance = np.fft.irfft(1 / white)[:whole]
-    one, every = (_periodogram(covariance[:length]) for length in (period, whole))
-    of_mean = every[::count][: len(spread)]
-    return (one - of_mean) / (count - 1), of_mean
+    return np.asarray(np.fft.irfft(1 / white)[:whole])
 
 
 def _periodogram(covariance: FloatArray) -> FloatArray:
@@ -57,6 +74,37 @@ def _periodogram(covariance: FloatArray) -> FloatArray:
     folded = (length - lag) * covariance
     folded[1:] += lag[1:] * covariance[:0:-1]
     return np.asarray(np.fft.rfft(folded).real / length**2)
+
+
+def _circulant(covariance: FloatArray, period: int, count: int) -> FloatArray:
+    """E|Ē_k|² (K,) of P periods if what leaves the record at its end had entered at its start."""
+    folded = covariance[:period].copy()
+    folded[1:] += covariance[period - 1 : 0 : -1]
+    return np.asarray(np.fft.rfft(folded).real / (period * count))
+
+
+def _ends(covariance: FloatArray) -> FloatArray:
+    """ℓ and ℓ' (2, N) with ℓ ℓ'ᵀ ≈ H, H_ij = r(i + j + 1) for i samples from the start and j from the end of a period.
+
+    ℓ ~ H e, with e the first column of H: exact for autoregressions of the first order.
+    """
+    half = len(covariance) // 2
+    values = covariance[1 : 2 * half]
+    start = _hankel(values, values[:half])
+    size = float(start @ start)
+    if size == 0.0:
+        return np.zeros((2, len(covariance)))
+    value = float(start @ _hankel(values, start)) / size
+    padded = np.zeros(len(covariance))
+    padded[:half] = start * np.sqrt(abs(value) / size)
+    return np.stack([padded, np.sign(value) * padded[::-1]])
+
+
+def _hankel(values: FloatArray, column: FloatArray) -> FloatArray:
+    """Σ_j values_{i+j} column_j (n,) for values (2n − 1,) and a column (n,)."""
+    length = 2 * len(column)
+    product = np.fft.rfft(values, length) * np.fft.rfft(column, length).conj()
+    return np.asarray(np.fft.irfft(product, length)[: len(column)])
 
 
 def _starts(half_width: int, real: BoolArray) -> IntArray:

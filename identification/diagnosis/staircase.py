@@ -65,13 +65,18 @@ def staircase(
     current = diagnose(model, batches, effects, degree, seed)
     steps = [_step(current.base, batches, held_out, current)]
     while current.best is not None and len(steps) <= largest:
-        grown = fit(current.best.fit.model, current.best.fit.rows, exact=current.best.fit.rows.scaled)
+        grown = refined(current.best.fit)
         current = diagnose(grown.model, batches, _left(grown.model, effects), degree, seed)
         found = _step(grown, batches, held_out, current)
         if _rises(found.held_out_error, steps[-1].held_out_error):
             break
         steps.append(found)
     return tuple(steps)
+
+
+def refined(found: Fit) -> Fit:
+    """A fit of the short list carried on to its minimum, with the covariance of all its parameters."""
+    return fit(found.model, found.rows, exact=found.rows.scaled, start=found.flows)
 
 
 def _left(model: ExtendedModel, effects: Sequence[Effect] | None) -> tuple[Effect, ...]:

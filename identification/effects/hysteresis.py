@@ -11,7 +11,10 @@ from identification.places.place import FurtherParameter
 
 @dataclass(frozen=True)
 class Hysteresis(Feedback):
-    """f = e z, dz = (dx − |dx| z)/δ, δ = `travel`: Bouc–Wen with n = 1 and γ = 0, Dahl friction [Wen1976, (3)]."""
+    """f = e z, dz = (dx − |dx| z)/δ, δ = `travel`: Bouc–Wen with n = 1 and γ = 0, Dahl friction [Wen1976, (3)].
+
+    For δ → 0 it becomes Coulomb friction, which is another effect: δ is kept above a fiftieth of the largest output.
+    """
 
     kind: ClassVar[str] = "hysteresis"
     title: ClassVar[str] = "hysteresis (Bouc–Wen)"
@@ -21,7 +24,9 @@ class Hysteresis(Feedback):
     states: ClassVar[float] = 1
     oversampling: ClassVar[int] = 8
     sign: ClassVar[int] = 1
-    parameters: ClassVar[tuple[FurtherParameter, ...]] = (FurtherParameter("travel", "output", (0.05, 0.15, 0.4, 1.0)),)
+    parameters: ClassVar[tuple[FurtherParameter, ...]] = (
+        FurtherParameter("travel", "output", (0.05, 0.15, 0.4, 1.0), lowest=0.02),
+    )
 
     travel: float = 1.0
 

@@ -46,16 +46,17 @@ def fit(
     tolerance: float = 1e-3,
     exact: bool = False,
     hopeless: float = np.inf,
+    start: Sequence[Flow] | None = None,
 ) -> Fit:
     """Minimise ‖(Y − Ŷ(θ_G, e, η))/σ‖² by Gauss–Newton steps, halved until they lead down.
 
     Tangents are exact for effects that act linearly; for effects on signals they leave out terms of the order of the
     effect itself, so that the minimum is reached in a few steps more. With `exact` the last steps are taken
     with derivatives by differences of the simulation, which also give the covariance. Stops when a step promises less
-    than `tolerance` of ‖r‖², or after two steps when twice what it promises still leaves ‖r‖² above `hopeless`. Outcome
-    "not_converged" after `iterations`.
+    than `tolerance` of ‖r‖², or after two steps when twice what it promises still leaves ‖r‖² above `hopeless`.
+    `start`: the signals to begin with, where they are known. Outcome "not_converged" after `iterations`.
     """
-    current = _at(model, rows, None)
+    current = _at(model, rows, start)
     outcome = Outcome("not_converged", "the fit stopped before its minimum; start nearer or fit fewer effects", 0)
     for i in range(iterations):
         step, promised = _step(current.tangents, current.residual)

@@ -22,8 +22,9 @@ class FurtherParameter:
 
     `values` are relative to what the experiment offers: for a frequency 0 … 1 runs logarithmically from half the lowest
     to twice the highest excited frequency, a time is its inverse; levels are relative to the largest input, output or
-    velocity; a number is absolute. `fitted`: False when only scanned. `lowest`, `highest`: the physical range of a
-    number; frequencies and times are kept where the excited band, widened fourfold to each side, can show them.
+    velocity; a number is absolute. `fitted`: False when only scanned. `lowest`, `highest`: the range of a number or
+    level, in the same measure; frequencies and times are kept where the excited band, widened fourfold to each side,
+    can show them.
     """
 
     name: str
@@ -199,4 +200,4 @@ def _range(parameter: FurtherParameter, flow: Flow) -> tuple[float, float]:
     if parameter.quantity in ("frequency", "time"):
         ends = [flow.scale(parameter.quantity, relative) for relative in (0.0, 1.0)]
         return min(ends) / 2, max(ends) * 2
-    return parameter.lowest, parameter.highest
+    return flow.scale(parameter.quantity, parameter.lowest), flow.scale(parameter.quantity, parameter.highest)

@@ -13,7 +13,7 @@ from identification.places.nonlinear import Actuator, Added, Feedback, Sensor
 from identification.places.place import Effect, Flow, Setting, derivative
 
 Acting = tuple[Effect, FloatArray]
-MEMORY = 4
+MEMORY, LIMIT = 4, 60
 DIVERGED = 1e3
 
 
@@ -105,7 +105,8 @@ def _core(
             total += e * effect.force(x, velocity)
         return np.asarray(entering - batch.spectrum(total))
 
-    core = fixed_point(lambda x: response * drive(x), response * entering if start is None else start)
+    first, limit = (response * entering, 3 * LIMIT) if start is None else (start, LIMIT)
+    core = fixed_point(lambda x: response * drive(x), first, limit)
     return core, drive(core)
 
 
@@ -124,7 +125,7 @@ def _measured(linear: ComplexArray, acting: Sequence[Acting], batch: Batch) -> C
 
 
 def fixed_point(
-    update: Callable[[ComplexArray], ComplexArray], start: ComplexArray, limit: int = 60, tolerance: float = 1e-8
+    update: Callable[[ComplexArray], ComplexArray], start: ComplexArray, limit: int = LIMIT, tolerance: float = 1e-8
 ) -> ComplexArray:
     """X = update(X) (M, K), each row by itself, by Anderson's mixing of the last four steps.
 

@@ -9,7 +9,7 @@ from scipy.stats import kstest
 
 from identification.comparison.gather import gather
 from identification.comparison.lack_of_fit import lack_of_fit
-from identification.comparison.noise import noise_freedom, pooled, spread_back, variance_of_mean
+from identification.comparison.noise import noise_freedom, noise_of_mean, pooled, spread_back
 from identification.extension.rows import Rows
 from identification.signals import TimeRecord
 from tests.support.oscillators import batches
@@ -40,14 +40,27 @@ def test_residuals_of_coloured_noise_have_unit_variance_and_lack_of_fit_is_unifo
     assert kstest([lack_of_fit("", *one).p_value for one in found], "uniform").pvalue > 5e-3
 
 
+@pytest.mark.parametrize("pole", [0.9, -0.8])
+def test_what_leaves_the_record_at_its_end_makes_no_jump_between_the_periods(pole):
+    """Unless it is allowed for, the jump at the end of the mean period has three times the variance of white noise."""
+    jumps = np.sign(pole) ** np.arange(256) * (pole ** np.arange(256.0) - abs(pole) ** np.arange(255.0, -1, -1))
+    found = []
+    for seed in range(100):
+        for batch in noise_alone(seed, pole).batches:
+            rows = batch.whiten(batch.outputs).reshape(len(batch.points), -1)
+            shape = batch.whiten(np.tile(batch.spectrum(jumps), (len(rows), 1))).reshape(rows.shape)
+            found.append(np.sum(rows * shape, axis=1) / np.linalg.norm(shape, axis=1))
+    assert np.var(np.concatenate(found)) == pytest.approx(1.0, abs=0.25)
+
+
 REAL = np.arange(40) == 0
 
 
 def test_short_periods_are_pooled_as_they_are():
     errors = np.random.default_rng(0).standard_normal((3, 9)) + 0j
-    variance, freedom, half_width = variance_of_mean(errors, np.arange(9) % 8 == 0)
-    assert (freedom, half_width) == (2.0 * 2 * 7, 3)
-    assert np.allclose(variance, variance[1] * np.where(np.arange(9) % 8 == 0, 2, 1))
+    found = noise_of_mean(errors, np.arange(9) % 8 == 0)
+    assert (found.freedom, found.half_width) == (2.0 * 2 * 7, 3)
+    assert np.allclose(found.variance, found.variance[1] * np.where(np.arange(9) % 8 == 0, 2, 1))
 
 
 def test_every_window_holds_as_many_lines_and_no_real_one():
