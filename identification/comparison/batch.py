@@ -9,7 +9,7 @@ import numpy as np
 from identification.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 
 EXCITED, ODD, EVEN = 0, 1, 2
-NEGLIGIBLE, SMALLEST = 0.02, 0.2
+NEGLIGIBLE, SMALLEST = 0.1, 0.2
 CLASS_NAMES = ("excited", "unexcited odd", "unexcited even")
 
 

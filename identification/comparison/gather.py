@@ -1,10 +1,6 @@
 """From records and frequency responses to batches of spectra with the variances of their noise."""
 
-<<<<<<< HEAD
 from collections.abc import Mapping, Sequence
-=======
-from collections.abc import Sequence
->>>>>>> caecdbe (Jumps of coloured noise at the ends of the mean period; diagnosis studies with pictures, first-order bench; hysteresis no longer imitates Coulomb friction)
 from dataclasses import replace
 
 import numpy as np
