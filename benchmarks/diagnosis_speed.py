@@ -1,13 +1,16 @@
 """How long one diagnosis takes, by effects, operating points and lines: python -m benchmarks.diagnosis_speed --runs 5.
 
-Prints the median of wall-clock and processor seconds over what is hidden; --output writes JSON.
+From 30 effects, 14 records and 200 lines each of the three grows by itself. Prints the median and the 95 % quantile of
+wall-clock seconds, and the median of processor seconds, over what is hidden; --output writes JSON, --picture HTML.
 """
 
+from pathlib import Path
 from time import perf_counter, process_time
 from typing import Any
 
 import numpy as np
 
+from app.report.style import colour, new_figure
 from benchmarks.command import command_line, write_json
 from benchmarks.virtual_bench.study import MODEL, effects
 from identification.comparison.gather import gather
@@ -15,7 +18,12 @@ from identification.diagnosis.diagnose import diagnose
 from identification.signals import TimeRecord
 
 PERIOD, SAMPLE_TIME, PERIODS = 1024, 0.05, 4
-CASES = ((30, 7, 200), (10, 7, 200), (42, 7, 200), (30, 3, 200), (30, 15, 200), (30, 7, 50), (30, 7, 400))
+USUAL = (30, 7, 200)
+GROWTH = {
+    "effects": [(count, *USUAL[1:]) for count in (10, 20, 30, 40)],
+    "records": [(USUAL[0], points, USUAL[2]) for points in (3, 7, 15, 30)],
+    "lines": [(*USUAL[:2], lines) for lines in (50, 100, 200, 400)],
+}
 HIDDEN = ("nothing", "delay", "quadratic sensor")
 
 
@@ -68,14 +76,48 @@ def measured(count: int, points: int, lines: int, runs: int) -> dict[str, Any]:
     }
 
 
+def table(growth: dict[str, list[dict[str, Any]]]) -> str:
+    """One block for each quantity that grows."""
+    lines = ["                effects records lines |  median s    95 %  processor s"]
+    for name, rows in growth.items():
+        lines += [
+            f"{name if i == 0 else '':15s} {row['effects']:7d} {row['records']:7d} {row['lines']:5d} |"
+            f" {row['median seconds']:9.2f} {row['95 % of seconds']:7.2f} {row['median processor seconds']:12.2f}"
+            for i, row in enumerate(rows)
+        ]
+    return "\n".join(lines)
+
+
+def picture(growth: dict[str, list[dict[str, Any]]], path: Path) -> None:
+    """Seconds over each quantity, as an HTML page."""
+    figure = new_figure([f"seconds over {name}" for name in growth], height=800)
+    figure.update_xaxes(matches=None)
+    for row, (name, cases) in enumerate(growth.items(), start=1):
+        for i, quantity in enumerate(("median seconds", "95 % of seconds")):
+            figure.add_scatter(
+                x=[case[name] for case in cases],
+                y=[case[quantity] for case in cases],
+                name=quantity,
+                line={"color": colour(i)},
+                showlegend=row == 1,
+                row=row,
+                col=1,
+            )
+    figure.write_html(path, include_plotlyjs=True)
+
+
 def main() -> None:
     """Parses the command line, runs, prints."""
-    options = command_line(__doc__, runs=3).parse_args()
-    table = []
-    for case in CASES:
-        table.append(measured(*case, options.runs))
-        print("  ".join(f"{name} {value:.3g}" for name, value in table[-1].items()), flush=True)
-    write_json(table, options.output)
+    parser = command_line(__doc__, runs=3)
+    parser.add_argument("--picture", type=Path, default=None, help="file for the growth as HTML")
+    options = parser.parse_args()
+    cases = dict.fromkeys(case for growing in GROWTH.values() for case in growing)
+    found = {case: measured(*case, options.runs) for case in cases}
+    growth = {name: [found[case] for case in growing] for name, growing in GROWTH.items()}
+    print(table(growth))
+    write_json(growth, options.output)
+    if options.picture is not None:
+        picture(growth, options.picture)
 
 
 if __name__ == "__main__":
