@@ -2,12 +2,10 @@
 
 Fits local models of growing order to 13 measured impedance spectra and a parameter-varying model over all of them;
 then asks the diagnosis what a resistor with one RC arc lacks, at half charge and over all states of charge. Prints
-tables, and the same as JSON with --json FILE, as HTML page with --picture FILE. Relative error: root mean square over
-the frequencies of |Z − Ẑ|/|Z|.
+tables; --output writes them as JSON, --page the staircases as HTML. Relative error: root mean square over the
+frequencies of |Z − Ẑ|/|Z|.
 """
 
-import argparse
-import json
 import time
 from pathlib import Path
 from typing import Any
@@ -15,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from app.report.style import colour, new_figure
+from benchmarks.command import command_line, write_json
 from identification.bases.chebyshev import Chebyshev
 from identification.bases.polynomial import Polynomial
 from identification.comparison.gather import gather
@@ -173,21 +172,18 @@ def table(rows: list[dict[str, Any]], charges: list[float]) -> str:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description="Battery impedance over the state of charge.")
+    parser = command_line(__doc__, page=True)
     parser.add_argument("folder", type=Path, help="folder with imiev_15C_eis.csv")
     parser.add_argument("--degree", type=int, default=6, help="degree of the Chebyshev series")
-    parser.add_argument("--json", type=Path, help="file for the figures")
-    parser.add_argument("--picture", type=Path, help="file for the staircases as HTML")
-    arguments = parser.parse_args()
-    data = read(arguments.folder)
-    rows = study(data, arguments.degree)
+    options = parser.parse_args()
+    data = read(options.folder)
+    rows = study(data, options.degree)
     print(table(rows, [one.operating_point[0] for one in data]))
     found = staircases(data)
     print(staircase_table(found))
-    if arguments.json:
-        arguments.json.write_text(json.dumps({"structures": rows, "staircases": found}, indent=1))
-    if arguments.picture:
-        picture(found, arguments.picture)
+    write_json({"structures": rows, "staircases": found}, options.output)
+    if options.page:
+        picture(found, options.page)
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 """How long one diagnosis takes, by effects, operating points and lines: python -m benchmarks.diagnosis_speed --runs 5.
 
 From 30 effects, 14 records and 200 lines each of the three grows by itself. Prints the median and the 95 % quantile of
-wall-clock seconds, and the median of processor seconds, over what is hidden; --output writes JSON, --picture HTML.
+wall-clock seconds, and the median of processor seconds, over what is hidden; --output writes JSON, --page HTML.
 """
 
 from pathlib import Path
@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from app.report.style import colour, new_figure
-from benchmarks.command import command_line, write_json
+from benchmarks.command import command_line, print_table, write_json
 from benchmarks.virtual_bench.study import MODEL, effects
 from identification.comparison.gather import gather
 from identification.diagnosis.diagnose import diagnose
@@ -76,18 +76,6 @@ def measured(count: int, points: int, lines: int, runs: int) -> dict[str, Any]:
     }
 
 
-def table(growth: dict[str, list[dict[str, Any]]]) -> str:
-    """One block for each quantity that grows."""
-    lines = ["                effects records lines |  median s    95 %  processor s"]
-    for name, rows in growth.items():
-        lines += [
-            f"{name if i == 0 else '':15s} {row['effects']:7d} {row['records']:7d} {row['lines']:5d} |"
-            f" {row['median seconds']:9.2f} {row['95 % of seconds']:7.2f} {row['median processor seconds']:12.2f}"
-            for i, row in enumerate(rows)
-        ]
-    return "\n".join(lines)
-
-
 def picture(growth: dict[str, list[dict[str, Any]]], path: Path) -> None:
     """Seconds over each quantity, as an HTML page."""
     figure = new_figure([f"seconds over {name}" for name in growth], height=800)
@@ -108,16 +96,14 @@ def picture(growth: dict[str, list[dict[str, Any]]], path: Path) -> None:
 
 def main() -> None:
     """Parses the command line, runs, prints."""
-    parser = command_line(__doc__, runs=3)
-    parser.add_argument("--picture", type=Path, default=None, help="file for the growth as HTML")
-    options = parser.parse_args()
+    options = command_line(__doc__, runs=3, page=True).parse_args()
     cases = dict.fromkeys(case for growing in GROWTH.values() for case in growing)
     found = {case: measured(*case, options.runs) for case in cases}
     growth = {name: [found[case] for case in growing] for name, growing in GROWTH.items()}
-    print(table(growth))
+    print_table([{"growing": name, **row} for name, rows in growth.items() for row in rows])
     write_json(growth, options.output)
-    if options.picture is not None:
-        picture(growth, options.picture)
+    if options.page:
+        picture(growth, options.page)
 
 
 if __name__ == "__main__":

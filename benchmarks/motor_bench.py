@@ -1,4 +1,4 @@
-"""A motor with a flexible coupling: python -m benchmarks.motor_bench FOLDER --output motor.json --picture motor.html.
+"""A motor with a flexible coupling: python -m benchmarks.motor_bench FOLDER --page motor.html.
 
 FOLDER holds MultisineTypeA.mat and MultisineTypeB.mat. From a rigid body the diagnosis is asked for what is missing;
 errors are root mean squares over the lines of |G − Ĝ|/|G|. In type B, whose multisine leaves lines out, the lines that
@@ -6,8 +6,6 @@ were not excited show the nonlinear part: what the output has there beyond the a
 current that would cause it.
 """
 
-import argparse
-import json
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -15,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from app.report.style import colour, new_figure
+from benchmarks.command import command_line, write_json
 from identification.arrays import ComplexArray, IntArray
 from identification.bases.polynomial import Polynomial
 from identification.comparison.gather import gather
@@ -191,17 +190,14 @@ def picture(results: list[dict[str, Any]], path: Path) -> None:
 
 def main() -> None:
     """Parses the command line, runs, prints."""
-    parser = argparse.ArgumentParser(description="A motor with a flexible coupling.")
+    parser = command_line(__doc__, page=True)
     parser.add_argument("folder", type=Path, help="folder with MultisineTypeA.mat and MultisineTypeB.mat")
-    parser.add_argument("--output", type=Path, default=None, help="file for the figures as JSON")
-    parser.add_argument("--picture", type=Path, default=None, help="file for the picture as HTML")
     options = parser.parse_args()
     results = [study(options.folder, kind) for kind in ("A", "B")]
     print("\n".join(table(one) for one in results))
-    if options.output is not None:
-        options.output.write_text(json.dumps(results, indent=1) + "\n")
-    if options.picture is not None:
-        picture(results, options.picture)
+    write_json(results, options.output)
+    if options.page:
+        picture(results, options.page)
 
 
 if __name__ == "__main__":

@@ -8,18 +8,16 @@ settings are chosen by the simulation error on records that were kept back, and 
 other operating points, another level and other lines, without noise: ‖Y − Ŷ‖/‖Y‖ over the excited lines.
 """
 
-import argparse
-import json
 import logging
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
 from time import perf_counter
 from typing import Any
 
 import numpy as np
 
+from benchmarks.command import command_line, print_table, write_json
 from benchmarks.diagnosis_study import held_out
 from benchmarks.processes import over
 from benchmarks.virtual_bench.bench import PERIOD, SAMPLE_TIME, STEPS, Bench, Experiments, experiments, noisy
@@ -233,33 +231,14 @@ def _median(values: Any) -> float:
     return float(np.median(list(values)))
 
 
-def table(rows: list[dict[str, Any]]) -> str:
-    """The medians side by side."""
-    left, right = "diagnosis: first   error     s", "PySINDy: true  exact terms   error     s"
-    lines = [f"{'hidden':18s} runs | error without | {left} | {right}"]
-    lines += [
-        f"{row['hidden']:18s} {row['runs']:4d} | {100 * row['error without it']:10.2f} %  |"
-        f" {row['diagnosis first']:16d} {100 * row['diagnosis error']:5.2f} % {row['diagnosis seconds']:5.1f} |"
-        f" {row['pysindy true term']:13d} {row['pysindy exact']:6d} {row['pysindy terms']:5.0f}"
-        f" {100 * row['pysindy error']:5.2f} % {row['pysindy seconds']:5.1f}"
-        for row in rows
-    ]
-    return "\n".join(lines)
-
-
 def main() -> None:
     """Parses the command line, runs, prints."""
-    parser = argparse.ArgumentParser(description="The diagnosis beside PySINDy on the same records.")
-    parser.add_argument("--runs", type=int, default=5)
-    parser.add_argument("--workers", type=int, default=2)
-    parser.add_argument("--output", type=Path, default=None)
-    options = parser.parse_args()
+    options = command_line(__doc__, runs=5).parse_args()
     strengths()
-    runs = over(one_run, [(kind, seed) for kind in HIDDEN for seed in range(options.runs)], options.workers)
+    runs = over(one_run, [(kind, seed) for kind in HIDDEN for seed in range(options.runs)], workers=2)
     rows = summary(runs)
-    print(table(rows))
-    if options.output is not None:
-        options.output.write_text(json.dumps({"summary": rows, "runs": runs}, indent=1) + "\n")
+    print_table(rows)
+    write_json({"summary": rows, "runs": runs}, options.output)
 
 
 if __name__ == "__main__":
