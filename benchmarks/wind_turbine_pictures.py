@@ -44,7 +44,7 @@ def pictures(clouds: dict[str, Cloud], truth: ComplexArray, noise: float) -> go.
         barmode="overlay",
         height=520 * rows,
         width=1300,
-        legend={"orientation": "h", "y": 1.0, "yanchor": "bottom", "x": 1.0, "xanchor": "right"},
+        legend={"x": 0.02, "y": 0.99, "yanchor": "top"},
         title=f"standard deviation of the noise {noise:g}; black: truth with the 95 % Cramér–Rao ellipse or intervals",
     )
     return figure

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from identification.arrays import ComplexArray, FloatArray, finite_floats
+from identification.arrays import ComplexArray, FloatArray, finite_floats, require_positive
 from identification.errors import RangeError, ShapeError
 from identification.scheduling import SchedulingVariable
 from identification.varying.records import require_within_range
@@ -40,8 +40,7 @@ class AffineStateSpace:
                 raise ShapeError(f"{name} has shape {getattr(self, name).shape}, {shape} is needed", name)
         if self.variables and len(self.variables) != m - 1:
             raise ShapeError(f"{len(self.variables)} scheduling variables and {m - 1} varying matrices", "variables")
-        if not (np.isfinite(self.sample_time) and self.sample_time > 0):
-            raise RangeError(f"the sample time is {self.sample_time}; it must be positive", "sample_time")
+        require_positive(self.sample_time, "sample time")
 
     @property
     def order(self) -> int:

@@ -18,6 +18,12 @@ def finite_floats(values: ArrayLike, field: str) -> FloatArray:
     return _frozen(np.array(values, dtype=np.float64), field)
 
 
+def require_positive(value: float, name: str) -> None:
+    """Raises RangeError unless the value is a positive number; the field is the name with underscores."""
+    if not (np.isfinite(value) and value > 0):
+        raise RangeError(f"the {name} is {value}; it must be positive", name.replace(" ", "_"))
+
+
 def finite_complex(values: ArrayLike, field: str) -> ComplexArray:
     """A read-only copy of `values` as complex doubles; raises RangeError when one of them is not finite."""
     return _frozen(np.array(values, dtype=np.complex128), field)

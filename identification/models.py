@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from identification.arrays import BoolArray, ComplexArray, FloatArray
+from identification.arrays import BoolArray, ComplexArray, FloatArray, require_positive
 from identification.errors import RangeError, ShapeError
 from identification.scheduling import ParameterDependence
 from identification.signals import OperatingPoint
@@ -43,10 +43,9 @@ class RationalStructure:
                 raise RangeError(f"{name} is {getattr(self, name)}; orders must be zero or more", name)
         if self.sample_time is None and (self.n_k or self.n_c or self.n_d):
             raise RangeError("n_k, n_c and n_d belong to discrete time; leave them at zero in continuous time", "n_k")
-        if self.sample_time is not None and not (np.isfinite(self.sample_time) and self.sample_time > 0):
-            raise RangeError(f"the sample time is {self.sample_time}; it must be positive", "sample_time")
-        if not (np.isfinite(self.frequency_scale) and self.frequency_scale > 0):
-            raise RangeError(f"the frequency scale is {self.frequency_scale}; it must be positive", "frequency_scale")
+        if self.sample_time is not None:
+            require_positive(self.sample_time, "sample time")
+        require_positive(self.frequency_scale, "frequency scale")
 
     @property
     def is_discrete(self) -> bool:

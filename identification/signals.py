@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from identification.arrays import ComplexArray, FloatArray, IntArray, finite_complex, finite_floats
+from identification.arrays import ComplexArray, FloatArray, IntArray, finite_complex, finite_floats, require_positive
 from identification.errors import MisuseError, RangeError, ShapeError
 
 OperatingPoint = tuple[float, ...]
@@ -33,15 +33,7 @@ class TimeRecord:
                 f"input has shape {self.input.shape} and output {self.output.shape}; give two vectors of one length",
                 "output",
             )
-        if len(self) < 2:
-            raise RangeError("a record needs at least two samples; record longer", "input")
-        if not (np.isfinite(self.sample_time) and self.sample_time > 0):
-            raise RangeError(f"the sample time is {self.sample_time}; it must be positive", "sample_time")
-        if self.period is not None and not 2 <= self.period <= len(self):
-            raise RangeError(
-                f"the period is {self.period} samples; it must lie between 2 and the record length {len(self)}",
-                "period",
-            )
+        require_sampling(len(self), self.sample_time, self.period)
 
     def __len__(self) -> int:
         return len(self.input)
@@ -50,6 +42,17 @@ class TimeRecord:
     def period_count(self) -> int:
         """How many whole periods the record holds (1 without a period)."""
         return 1 if self.period is None else len(self) // self.period
+
+
+def require_sampling(samples: int, sample_time: float, period: int | None) -> None:
+    """Raises RangeError unless there are two samples or more, and sample time and period can be theirs."""
+    if samples < 2:
+        raise RangeError("a record needs at least two samples; record longer", "input")
+    require_positive(sample_time, "sample time")
+    if period is not None and not 2 <= period <= samples:
+        raise RangeError(
+            f"the period is {period} samples; it must lie between 2 and the record length {samples}", "period"
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -176,9 +179,10 @@ def _check_frequencies(frequencies: FloatArray, sample_time: float | None) -> No
         raise RangeError("a frequency is negative; give frequencies from zero up", "frequencies")
     if len(np.unique(frequencies)) < len(frequencies):
         raise RangeError("a frequency occurs twice; average repeated measurements first", "frequencies")
-    if sample_time is not None and not (np.isfinite(sample_time) and sample_time > 0):
-        raise RangeError(f"the sample time is {sample_time}; it must be positive", "sample_time")
-    if sample_time is not None and frequencies.max() > np.pi / sample_time * (1 + 1e-9):
+    if sample_time is None:
+        return
+    require_positive(sample_time, "sample time")
+    if frequencies.max() > np.pi / sample_time * (1 + 1e-9):
         raise RangeError(
             f"the frequency {frequencies.max():.6g} rad/s lies above the Nyquist frequency"
             f" {np.pi / sample_time:.6g} rad/s; remove it or correct the sample time",

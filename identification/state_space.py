@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.linalg import schur
 
-from identification.arrays import BoolArray, ComplexArray, FloatArray, finite_floats
-from identification.errors import MisuseError, RangeError, ShapeError
+from identification.arrays import BoolArray, ComplexArray, FloatArray, finite_floats, require_positive
+from identification.errors import MisuseError, ShapeError
 from identification.resolvent import resolvent
 
 
@@ -55,8 +55,8 @@ class StateSpace(MatrixSizes):
         for name in "abcd":
             object.__setattr__(self, name, finite_floats(getattr(self, name), name))
         require_matching(self.a, self.b, self.c, self.d)
-        if self.sample_time is not None and not (np.isfinite(self.sample_time) and self.sample_time > 0):
-            raise RangeError(f"the sample time is {self.sample_time}; it must be positive", "sample_time")
+        if self.sample_time is not None:
+            require_positive(self.sample_time, "sample time")
 
     def variable(self, omega: ArrayLike) -> ComplexArray:
         """z = e^{jωT}, or jω in continuous time, at ω (F,) in rad/s."""

@@ -10,6 +10,7 @@ from identification.arrays import FloatArray, finite_floats
 from identification.errors import MisuseError, RangeError, ShapeError
 from identification.inspection import find_period
 from identification.scheduling import SchedulingVariable
+from identification.signals import require_sampling
 from identification.spectral.periodic_average import transient_periods
 
 TOLERANCE = 1e-6
@@ -41,15 +42,7 @@ class VaryingRecord:
                     f"{name} has {len(getattr(self, name))} samples, the input {len(self.input)}; give equal lengths",
                     name,
                 )
-        if len(self) < 2:
-            raise RangeError("a record needs at least two samples; record longer", "input")
-        if not (np.isfinite(self.sample_time) and self.sample_time > 0):
-            raise RangeError(f"the sample time is {self.sample_time}; it must be positive", "sample_time")
-        if self.period is not None and not 2 <= self.period <= len(self):
-            raise RangeError(
-                f"the period is {self.period} samples; it must lie between 2 and the record length {len(self)}",
-                "period",
-            )
+        require_sampling(len(self), self.sample_time, self.period)
         require_within_range(self.variables, self.scheduling)
 
     def __len__(self) -> int:
