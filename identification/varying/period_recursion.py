@@ -9,6 +9,8 @@ from identification.affine_state_space import Matrices, frozen_matrices
 from identification.arrays import FloatArray
 from identification.scheduling import with_constant
 
+AT_ONCE = 100_000  # numbers of x(t): what stays in the cache, and no more memory than one state needs
+
 
 @dataclass(frozen=True, eq=False)
 class PeriodRecursion:
@@ -74,13 +76,18 @@ class PeriodicResponse:
     recursion: PeriodRecursion
 
     def through(self) -> FloatArray:
-        """What each signal, added to each state, does to y: (P, n_y, n, 1 + n_p, n + n_u)."""
+        """What each signal, added to each state, does to y: (P, n_y, n, 1 + n_p, n + n_u); some states at a time."""
         samples, n_y, n = self.c.shape
-        flat, state = self.signals.reshape(samples, -1), np.arange(n)
-        forcing = np.zeros((samples, n, n, flat.shape[1]))
-        forcing[:, state, state] = flat[:, None]
-        found = self.c @ self.recursion.solve(forcing.reshape(samples, n, -1))
-        return np.asarray(found.reshape(samples, n_y, n, *self.signals.shape[1:]))
+        flat = self.signals.reshape(samples, -1)
+        at_once = max(1, AT_ONCE // (n * flat.size))
+        found = np.empty((samples, n_y, n, flat.shape[1]))
+        for first in range(0, n, at_once):
+            states = np.arange(first, min(first + at_once, n))
+            forcing = np.zeros((samples, n, len(states), flat.shape[1]))
+            forcing[:, states, states - first] = flat[:, None]
+            response = self.c @ self.recursion.solve(forcing.reshape(samples, n, -1))
+            found[:, :, states] = response.reshape(samples, n_y, len(states), -1)
+        return found.reshape(samples, n_y, n, *self.signals.shape[1:])
 
 
 def periodic_response(matrices: Matrices, u: FloatArray, p: FloatArray) -> PeriodicResponse:

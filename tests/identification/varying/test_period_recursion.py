@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
+from identification.varying import period_recursion
 from identification.varying.affine_parameters import AffineSizes
 from identification.varying.harmonic_blocks import HarmonicBlocks
-from identification.varying.period_recursion import PeriodRecursion
+from identification.varying.period_recursion import PeriodRecursion, periodic_response
 from tests.identification.varying.models import random_model
 
 
@@ -35,3 +36,14 @@ def test_a_period_that_is_stated_longer_changes_nothing(size: float) -> None:
         expected = np.array([at[int(line)] for line in long.lines])
         assert np.allclose(of_long, expected, atol=1e-10 * abs(expected).max())
     assert np.allclose(long.output(theta), long.output_and_jacobian(theta)[0], rtol=1e-10)
+
+
+def test_states_one_at_a_time_or_together(monkeypatch: pytest.MonkeyPatch) -> None:
+    generator = np.random.default_rng(4)
+    model = random_model(generator, 3, 1, 2, 1)
+    u, p = generator.standard_normal((20, 2)), generator.uniform(-1, 1, (20, 1))
+    response = periodic_response((model.a, model.b, model.c, model.d), u, p)
+    together = response.through()
+    for at_once in (1, 2 * response.signals.size * 3):
+        monkeypatch.setattr(period_recursion, "AT_ONCE", at_once)
+        assert np.allclose(response.through(), together, rtol=1e-12)
