@@ -13,17 +13,21 @@ from app.schemas.comparisons import (
     ComparedExperiment,
     ComparisonPart,
     Data,
+    DisturbanceDocument,
     PointTest,
 )
 from app.schemas.experiments import Experiment
 from app.schemas.outcomes import TestDocument
 from identification.comparison.batch import Batch
 from identification.comparison.compare import Comparison, bands
+from identification.comparison.disturbance import Disturbance
 from identification.outcome import TestResult
 
 
-def part_document(data: Data, found: Comparison, batches: Sequence[Batch]) -> ComparisonPart:
-    """The tests of one part of the data."""
+def part_document(
+    data: Data, found: Comparison, batches: Sequence[Batch], experiments: Sequence[Experiment]
+) -> ComparisonPart:
+    """The tests of one part of the data, measured in these experiments."""
     points = np.unique(np.concatenate([one.points for one in found.maps]), axis=0)
     by_point = zip(points, test_documents(found.by_point), strict=True) if found.by_point else ()
     return ComparisonPart(
@@ -36,6 +40,19 @@ def part_document(data: Data, found: Comparison, batches: Sequence[Batch]) -> Co
         dependence=_test(found.dependence),
         dynamics=_test(found.dynamics),
         between_harmonics=test_documents(found.between),
+        disturbances=[_disturbance(experiments[m].id, one) for m, one in found.disturbances],
+    )
+
+
+def _disturbance(experiment_id: str, found: Disturbance) -> DisturbanceDocument:
+    return DisturbanceDocument(
+        experiment_id=experiment_id,
+        frequency_rad_per_second=found.frequency,
+        frequency_deviation_rad_per_second=found.frequency_deviation,
+        amplitude=found.amplitude,
+        amplitude_deviation=found.amplitude_deviation,
+        phase_rad=found.phase,
+        p_value=found.p_value,
     )
 
 

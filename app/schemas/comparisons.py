@@ -55,6 +55,18 @@ class BandTest(CamelModel):
     test: TestDocument
 
 
+class DisturbanceDocument(CamelModel):
+    """A sine wave in the output that does not repeat with the period, such as mains hum."""
+
+    experiment_id: str
+    frequency_rad_per_second: Double
+    frequency_deviation_rad_per_second: Double
+    amplitude: Double = Field(description="in the unit of the output")
+    amplitude_deviation: Double
+    phase_rad: Double = Field(description="of the cosine at the first sample")
+    p_value: Double
+
+
 class ComparisonPart(CamelModel):
     """Tests of the experiments that were fitted, or of those that were held out, or of one with varying scheduling.
 
@@ -80,6 +92,9 @@ class ComparisonPart(CamelModel):
     )
     dynamics: TestDocument | None = Field(description="whether even those do not fit; null if held out")
     between_harmonics: list[TestDocument] = Field(description="disturbances with frequencies of their own")
+    disturbances: list[DisturbanceDocument] = Field(
+        default_factory=list, description="the strongest of them in each experiment that has one, fitted"
+    )
     simulation_errors: list[TestDocument] = Field(
         default_factory=list,
         description="of a record along p(t) that is not synchronised: is y − ŷ white and normal, and independent"

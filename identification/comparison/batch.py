@@ -7,6 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from identification.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from identification.comparison.disturbance import Disturbance
 
 EXCITED, ODD, EVEN = 0, 1, 2
 NEGLIGIBLE, SMALLEST = 0.1, 0.2
@@ -44,6 +45,7 @@ class Batch:
     ends: FloatArray | None = None
     scaled: bool = True
     between: tuple[FloatArray, ...] = field(default=())
+    disturbances: tuple[Disturbance | None, ...] = ()
     logged: Mapping[str, FloatArray] = field(default_factory=dict)
 
     @cached_property

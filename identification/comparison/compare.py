@@ -10,6 +10,7 @@ from scipy.special import fdtrc
 from identification.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from identification.comparison.batch import CLASS_NAMES, EXCITED, Batch
 from identification.comparison.between import strongest_line
+from identification.comparison.disturbance import Disturbance
 from identification.comparison.lack_of_fit import lack_of_fit
 from identification.comparison.noise import noise_freedom
 from identification.comparison.responses import ComparedResponses, compared_responses
@@ -57,6 +58,7 @@ class Comparison:
     dependence: TestResult | None
     dynamics: TestResult | None
     between: tuple[TestResult, ...]
+    disturbances: tuple[tuple[int, Disturbance], ...]
     fit_percent: FloatArray
 
 
@@ -102,8 +104,9 @@ def compare(model: ExtendedModel, batches: Sequence[Batch], fitted: bool = True)
     maps = tuple(_map(*one) for one in zip(batches, rows.parts(z), flows, strict=True))
     percent = _fit_percent(batches, flows)
     between = tuple(strongest_line(powers) for batch in batches for powers in batch.between)
+    disturbances = _disturbances(batches)
     if not rows.scaled:
-        return Comparison(maps, None, (), (), (), None, None, between, percent)
+        return Comparison(maps, None, (), (), (), None, None, between, disturbances, percent)
     everything = np.ones(len(z), dtype=np.bool_)
     overall = judge.test("lack of fit", everything)
     dependence, dynamics = _split(rows, flows, judge, overall)
@@ -116,8 +119,17 @@ def compare(model: ExtendedModel, batches: Sequence[Batch], fitted: bool = True)
         dependence,
         dynamics,
         between,
+        disturbances,
         percent,
     )
+
+
+def _disturbances(batches: Sequence[Batch]) -> tuple[tuple[int, Disturbance], ...]:
+    """The disturbances found, with the places of their experiments in the user's list."""
+    every = [
+        (int(m), one) for b in batches for m, one in zip(b.members, b.disturbances, strict=False) if one is not None
+    ]
+    return tuple(sorted(every, key=lambda pair: pair[0]))
 
 
 def _root(covariance: FloatArray) -> FloatArray:

@@ -7,6 +7,7 @@ import numpy as np
 
 from identification.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from identification.comparison.batch import EVEN, EXCITED, ODD, Batch
+from identification.comparison.disturbance import find_disturbance
 from identification.comparison.noise import NoiseOfMean, noise_of_mean
 from identification.errors import MisuseError
 from identification.response_tests import real_lines
@@ -72,6 +73,7 @@ def _joined(group: list[Batch]) -> Batch:
         ends=ends,
         scaled=first.scaled,
         between=between,
+        disturbances=tuple(one for part in group for one in part.disturbances),
         logged={name: np.concatenate([part.logged[name] for part in group]) for name in first.logged},
         **stacked,
     )
@@ -143,6 +145,7 @@ def _of_periodic(m: int, record: TimeRecord, mean_value: bool) -> Batch:
         half_width=noise.half_width,
         ends=noise.ends[None],
         between=(between_harmonics(record, count),),
+        disturbances=(find_disturbance(record, count),),
     )
 
 

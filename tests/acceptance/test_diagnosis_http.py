@@ -258,6 +258,25 @@ def stated(api: Api, plant: Json) -> Json:
     return api.post("/models/stated", {"plantId": plant["id"], "theta": [1.8, 64.0, 28.0, 1.0], "noiseVariance": 1.0})
 
 
+def test_hum_between_the_harmonics_is_fitted(api: Api, plant: Json, stated: Json) -> None:
+    record = HiddenPlant(0.0).records([0.0], level=10.0, seed=31)[0]
+    time = 0.05 * np.arange(len(record["output"]))
+    record["output"] = (np.array(record["output"]) + 0.02 * np.cos(2 * np.pi * 1.27 * time + 0.4)).tolist()
+    quiet = HiddenPlant(0.0).records([0.5], level=10.0, seed=32)[0]
+    made = [api.made("/experiments", {"plantId": plant["id"], **body})["id"] for body in (quiet, record)]
+    covariance = np.diag([1e-4] * 4).tolist()
+    body = {"plantId": plant["id"], "theta": [1.8, 64.0, 28.0, 1.0], "noiseVariance": 1.0, "covariance": covariance}
+    model = api.post("/models/stated", body)["id"]
+    compared = api.made("/comparisons", {"modelId": model, "experimentIds": made})
+    (found,) = compared["parts"][0]["disturbances"]
+    assert found["experimentId"] == made[1]
+    for name, unit, true in (("frequency", "RadPerSecond", 2 * np.pi * 1.27), ("amplitude", "", 0.02)):
+        deviation = found[f"{name}Deviation{unit}"]
+        assert abs(found[f"{name}{unit}"] - true) < 4 * deviation < 0.05 * true
+    assert found["phaseRad"] == pytest.approx(0.4, abs=0.2)
+    assert found["pValue"] < 1e-3
+
+
 def test_frequency_responses_alone(api: Api, plant: Json, stated: Json) -> None:
     bodies = responses([-1.0, 0.0, 1.0], delay=0.01)
     measured = [api.made("/experiments", {"plantId": plant["id"], **body})["id"] for body in bodies]

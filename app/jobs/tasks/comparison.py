@@ -47,8 +47,9 @@ def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
             continue
         context.progress(0.1 + 0.4 * PARTS.index(data), "the fitted data" if data == "fitted" else "held-out data")
         found, batches = _compared(payload, data, places, context)
-        parts.append(part_document(data, found, batches).as_json())
-        documents = compared_experiments(data, found, [experiments[i] for i in places])
+        measured = [experiments[i] for i in places]
+        parts.append(part_document(data, found, batches, measured).as_json())
+        documents = compared_experiments(data, found, measured)
         compared |= dict(zip(places, documents, strict=True))
         arrays |= map_arrays(found, places)
     for i in sorted(set(range(len(experiments))) - set(still)):
