@@ -13,7 +13,7 @@ from identification.errors import NotIdentifiableError, RangeError, ShapeError
 from identification.least_squares import levenberg_marquardt
 from identification.outcome import Outcome
 from identification.varying.affine_parameters import AffineSizes
-from identification.varying.progress import Progress, silent
+from identification.varying.progress import Progress, Steps, silent, within
 from identification.varying.records import VaryingRecord
 
 ROUNDS = 4
@@ -73,9 +73,11 @@ def output_error(
     floor = 1e-20 * np.maximum(np.mean(record.output**2, axis=0), np.finfo(float).tiny)
     errors = record.output - _simulated(_matrices(model), record)[1]
     for i in range(ROUNDS):
-        progress(i / ROUNDS, f"likelihood, {iterations} iterations")
+        steps = Steps(within(progress, i / ROUNDS, (i + 1) / ROUNDS), f"likelihood, round {i + 1}")
         problem = _Problem(model, record, errors.T @ errors / len(errors) + np.diag(floor), floor)
-        solution = levenberg_marquardt(problem.evaluate, np.zeros(problem.sizes.free), None, max_iterations, 1e-4)
+        solution = levenberg_marquardt(
+            steps.of(problem.evaluate), np.zeros(problem.sizes.free), None, max_iterations, 1e-4
+        )
         iterations += solution.outcome.iterations
         a, b, c, d = problem.matrices(solution.x)
         model = replace(model, a=a, b=b, c=c, d=d)

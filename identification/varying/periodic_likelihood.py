@@ -17,7 +17,7 @@ from identification.varying.affine_parameters import AffineSizes, balanced, stat
 from identification.varying.input_affine_start import input_affine_start
 from identification.varying.periodic_residuals import PeriodicResiduals, lack_of_fit
 from identification.varying.perturbed_starts import perturbed_starts, stabilised
-from identification.varying.progress import Progress, silent, within
+from identification.varying.progress import Progress, Steps, silent, within
 from identification.varying.records import TOLERANCE, SteadyPeriods, VaryingRecord, steady_periods
 
 CHARTS = 20
@@ -154,7 +154,7 @@ def minimised(
     """The minimum that a search from θ (size,) reaches, with J (R, size) there, and the last chart Q (size, free)."""
     sizes, iterations = residuals.blocks.sizes, 0
     for i in range(max_charts):
-        progress(i / max_charts, f"likelihood, {iterations} iterations")
+        steps = Steps(within(progress, i / max_charts, (i + 1) / max_charts), f"likelihood, chart {i + 1}")
         theta = sizes.join(_matrices(balanced(sizes.model(theta, 1.0))))
         chart, centre = sizes.chart(theta), theta
 
@@ -167,7 +167,7 @@ def minimised(
         def feasible(delta: FloatArray, chart: FloatArray = chart, centre: FloatArray = centre) -> bool:
             return residuals.blocks.stable(centre + chart @ delta)
 
-        solution = levenberg_marquardt(evaluate, np.zeros(chart.shape[1]), feasible, STEPS_IN_A_CHART, 1e-7)
+        solution = levenberg_marquardt(steps.of(evaluate), np.zeros(chart.shape[1]), feasible, STEPS_IN_A_CHART, 1e-7)
         theta = centre + chart @ solution.x
         iterations += solution.outcome.iterations
         if solution.outcome.ok or solution.outcome.iterations < STEPS_IN_A_CHART:
