@@ -11,11 +11,15 @@ export function basisFields(entries, pointer, onChange, degree = 1) {
   const place = h("div", {});
   const total = integerInput(null, { min: 0 });
   const totalField = fields(field("highest sum of degrees", total, { hint: "empty: all products", pointer: `${pointer}/totalDegree` }));
-  let factors = [];
+  const factors = [];
+  let titles = [];
   const setVariables = (names) => {
+    const wanted = names.map((name, index) => `over ${name || `variable ${index + 1}`}`);
+    if (wanted.join() === titles.join()) return; // moving a field that is being filled in would take the focus from it
+    titles = wanted;
     while (factors.length > names.length) factors.pop();
     while (factors.length < names.length) factors.push(factor(factors.length));
-    replace(place, factors.map((one, index) => h("div", {}, h("h3", {}, `over ${names[index] || `variable ${index + 1}`}`), one.element)));
+    replace(place, factors.map((one, index) => h("div", {}, h("h3", {}, titles[index]), one.element)));
     totalField.hidden = names.length < 2;
   };
   const factor = (index) => pluginField("functions", entries, {

@@ -18,7 +18,7 @@ export async function plot(place, { draw, caption, table = null, height = 340, l
   const Plotly = await loadPlotly();
   const render = () => {
     const { data, layout } = draw();
-    return Plotly.react(chart, data, styled(layout, height), SETTINGS);
+    return Plotly.react(chart, data, styled(layout, height, data), SETTINGS);
   };
   await render();
   drawn.set(chart, render);
@@ -48,7 +48,7 @@ export function linkAxes(charts, names = ["xaxis"]) {
 
 // An axis: logarithmic or linear, with a title.
 export function axis(title, { log = false, ...more } = {}) {
-  return { title: { text: title }, type: log ? "log" : "linear", ...(log ? { exponentformat: "power", nticks: 8 } : {}), ...more };
+  return { title: { text: title }, type: log ? "log" : "linear", ...(log ? { exponentformat: "power" } : {}), ...more };
 }
 
 // At most `most` points of a long curve that look the same: the smallest and largest of each stretch.
@@ -75,7 +75,7 @@ export function loadPlotly() {
   return loading;
 }
 
-function styled(layout, height) {
+function styled(layout, height, data) {
   const line = { automargin: true, showline: true, linecolor: colour("--edge"), gridcolor: colour("--line"), zeroline: false, ticks: "outside", tickcolor: colour("--edge") };
   const result = {
     height,
@@ -91,9 +91,20 @@ function styled(layout, height) {
     ...layout,
   };
   for (const name of Object.keys(result).filter((key) => /^[xy]axis\d*$/.test(key))) {
-    result[name] = { ...line, ...result[name], title: { standoff: 10, ...result[name].title } };
+    const ticks = result[name].type === "log" ? { dtick: logarithmicStep(data, name) } : {};
+    result[name] = { ...line, ...ticks, ...result[name], title: { standoff: 10, ...result[name].title } };
   }
   return result;
+}
+
+// At most some eight ticks: whole decades, or 1, 2 and 5 where there are few.
+function logarithmicStep(data, name) {
+  const [, letter, number] = /^([xy])axis(\d*)$/.exec(name);
+  const own = data.filter((trace) => (trace[`${letter}axis`] ?? letter) === letter + number);
+  const values = own.flatMap((trace) => [...(trace[letter] ?? [])]).filter((one) => one > 0);
+  const [low, high] = values.reduce(([least, most], one) => [Math.min(least, one), Math.max(most, one)], [Infinity, 0]);
+  const decades = Math.log10(high / low);
+  return decades > 1.5 ? Math.ceil(decades / 8) : "D2";
 }
 
 onThemeChange(() => {

@@ -9,14 +9,16 @@ export function pluginField(label, entries, { pointer, kind = null, values = {},
   const choices = entries.map((entry) => [entry.kind, words(entry.kind)]);
   const chooser = select(none === null ? choices : [["", none], ...choices], kind ?? (none === null ? entries[0].kind : ""));
   const hint = h("p", { class: "hint wide" });
-  const place = h("div", { class: "fields" });
+  const place = h("div", {});
   let readers = [];
   const draw = () => {
     const entry = entries.find((one) => one.kind === chooser.value);
     hint.textContent = withoutSources(entry?.description ?? "");
     const options = (entry?.options ?? []).map((option) => optionField(option, pointer, values[entry.kind]?.[option.name]));
     readers = options.filter(Boolean);
-    replace(place, readers.map((one) => one.element));
+    const [needed, others] = [true, false].map((required) => readers.filter((one) => one.required === required).map((one) => one.element));
+    replace(place, needed.length ? h("div", { class: "fields" }, needed) : null,
+      others.length ? h("details", {}, h("summary", {}, "Options"), h("div", { class: "fields" }, others)) : null);
   };
   const element = h("div", { class: "wide", oninput: onChange, onchange: onChange }, fields(field(label, chooser, { pointer })), hint, place);
   chooser.addEventListener("change", draw);
@@ -33,7 +35,7 @@ function optionField({ name, description, required, valueSchema }, pointer, give
   if (!made) return null;
   const [input, read] = made;
   const element = field(words(name), input, { hint: withoutSources(description), pointer: `${pointer}/${name}` });
-  return { element, read: () => (read() === null && !required ? [] : [[name, read()]]) };
+  return { element, required, read: () => (read() === null && !required ? [] : [[name, read()]]) };
 }
 
 function inputFor(schema, start) {

@@ -16,6 +16,7 @@ export function showProblem(problem, { place, form = null }) {
   }
   const marked = (problem.errors ?? []).length - rest.length;
   place.prepend(problemBox(problem, rest, marked));
+  first?.closest("details")?.setAttribute("open", "");
   if (first) (first.matches("input, select, textarea") ? first : first.querySelector("input, select, textarea, button") ?? first).focus();
   return first;
 }

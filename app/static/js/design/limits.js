@@ -1,0 +1,39 @@
+// What a design may use: kind of spectra, samples, band, energy.
+
+import { h } from "../dom.js";
+import { checkbox, field, fields, integerInput, numberInput, numberOf, textInput } from "../forms.js";
+import { labelled, radPerSecond } from "../numbers.js";
+import { pluginField } from "../plugin_field.js";
+import { usualBand } from "./target_fields.js";
+
+// {element, value()}: these fields of a request.
+export function limits(catalogue, plant) {
+  const continuous = plant.structure.timeDomain === "continuous";
+  const family = pluginField("kind of spectra", catalogue.spectrumFamilies, { pointer: "/spectrumFamily", kind: "lines", values: { fir: { degree: 10 }, lines: { samples: 500 } } });
+  const name = textInput();
+  const samples = integerInput(1000, { min: 1 });
+  const step = numberInput(continuous ? Number((0.05 / usualBand(plant.structure)[1]).toPrecision(2)) : null, { min: 0 });
+  const [low, high, cap, tolerance] = [numberInput(null, { min: 0 }), numberInput(null, { min: 0 }), numberInput(null, { min: 0 }), numberInput(1e-4, { min: 0 })];
+  const prior = checkbox(false);
+  const energy = labelled("most energy at one point", plant.input.unit && `${plant.input.unit}²`);
+  const element = h("div", {}, fields(
+    field("samples of each experiment", samples, { hint: "more when the noise model needs them", pointer: "/samples" }),
+    continuous ? field("sample time (s)", step, { hint: "of the input to be played", pointer: "/sampleTimeSeconds" }) : null,
+    field("lowest frequency (Hz)", low, { hint: "empty: all may be excited", pointer: "/band/minimumRadPerSecond" }),
+    field("highest frequency (Hz)", high, { pointer: "/band/maximumRadPerSecond" }),
+    field(energy, cap, { hint: "Σu²; empty: no limit", pointer: "/energyCaps" }),
+    field("relative gap", tolerance, { hint: "that is certified at most", pointer: "/tolerance" }),
+    field("name", name, { pointer: "/name" }),
+    field("count what the model knows already", prior, { hint: "and design what is missing", pointer: "/usePriorInformation" })), family.element);
+  const value = () => ({
+    name: name.value.trim(), samples: numberOf(samples), sampleTimeSeconds: continuous ? numberOf(step) : null, spectrumFamily: family.value(),
+    band: band(numberOf(low), numberOf(high)), energyCaps: numberOf(cap) === null ? null : { default: numberOf(cap) },
+    usePriorInformation: prior.checked, tolerance: numberOf(tolerance),
+  });
+  return { element, value };
+}
+
+function band(low, high) {
+  if (low === null && high === null) return null;
+  return { minimumRadPerSecond: radPerSecond(low ?? 0), maximumRadPerSecond: high === null ? null : radPerSecond(high) };
+}
