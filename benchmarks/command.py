@@ -1,9 +1,10 @@
-"""What the studies share on the command line: options, tables, files."""
+"""What the studies share on the command line: options, times, tables, files."""
 
 import argparse
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
+from time import perf_counter
 
 
 def command_line(
@@ -20,6 +21,13 @@ def command_line(
         parser.add_argument("--page", type=Path, help="where to write the pictures as an offline HTML page")
     parser.add_argument("--output", type=Path, help="where to write the figures as JSON")
     return parser
+
+
+def timed(call: Callable[[], object], clock: Callable[[], float] = perf_counter) -> float:
+    """Seconds of one call, of the wall clock or of another one."""
+    start = clock()
+    call()
+    return clock() - start
 
 
 def write_json(document: object, file: Path | None) -> None:

@@ -6,6 +6,7 @@ from time import process_time
 
 import numpy as np
 
+from benchmarks.command import timed
 from identification.arrays import FloatArray
 from identification.correlation_analysis import CorrelatedSubMarkov
 from identification.ho_kalman import full_realisation, largest_entries, reduced_realisation
@@ -89,9 +90,4 @@ def one_by_one(source: CorrelatedSubMarkov, parameters: list[Parameter]) -> Floa
 
 def seconds(call: Callable[[], object], repeats: int) -> float:
     """The best processor time."""
-    times = []
-    for _ in range(repeats):
-        start = process_time()
-        call()
-        times.append(process_time() - start)
-    return min(times)
+    return min(timed(call, process_time) for _ in range(repeats))

@@ -4,12 +4,10 @@ python -m benchmarks.design_solver [--runs 7] [--degrees 10 20 40] [--output FIL
 """
 
 import statistics
-import time
-from collections.abc import Callable
 
 import numpy as np
 
-from benchmarks.command import command_line, write_json
+from benchmarks.command import command_line, timed, write_json
 from benchmarks.ghosh_example import DEPENDENCE, DEVIATIONS, GRID, NOISE_VARIANCE, STRUCTURE, THETA
 from identification.models import LpvModel
 from oed.design import design
@@ -54,13 +52,6 @@ def compare(degree: int, runs: int) -> dict[str, float]:
         "ratioMinimum": min(ratios),
         "ratioMaximum": max(ratios),
     }
-
-
-def timed(call: Callable[[], object]) -> float:
-    """Seconds of one call."""
-    start = time.perf_counter()
-    call()
-    return time.perf_counter() - start
 
 
 if __name__ == "__main__":

@@ -13,12 +13,11 @@ T n_x unknowns take where the period is run through in time.
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
-from time import perf_counter
 
 import numpy as np
 from scipy.linalg import lu_factor, lu_solve
 
-from benchmarks.command import command_line, print_table, write_json
+from benchmarks.command import command_line, print_table, timed, write_json
 from benchmarks.wind_turbine_plant import PLANT, SIZES, THETA, disturbed, noise_free
 from identification.arrays import ComplexArray, FloatArray
 from identification.varying.affine_parameters import AffineSizes
@@ -33,12 +32,7 @@ Response = Callable[[FloatArray], tuple[ComplexArray, ComplexArray]]
 def median_seconds(run: Callable[[], object], repeats: int) -> float:
     """The median time of a call."""
     run()
-    times = []
-    for _ in range(repeats):
-        start = perf_counter()
-        run()
-        times.append(perf_counter() - start)
-    return float(np.median(times))
+    return float(np.median([timed(run) for _ in range(repeats)]))
 
 
 def step(residual: FloatArray, jacobian: FloatArray) -> FloatArray:
@@ -103,9 +97,8 @@ def agreement(blocks: HarmonicBlocks, dense: Dense, theta: FloatArray) -> float:
 def wind_turbine(repeats: int, dense_repeats: int) -> dict[str, float]:
     """Iterations of the paper's example, in blocks and dense."""
     record = disturbed(noise_free("multisine"), 0.06, False, np.random.default_rng(1))
-    start = perf_counter()
+    preparation = timed(lambda: PeriodicResiduals.of(steady_periods(record, 1), PLANT.order))
     residuals = PeriodicResiduals.of(steady_periods(record, 1), PLANT.order)
-    preparation = perf_counter() - start
     chart = SIZES.chart(THETA)
     result = {
         "preparation (periods, noise) in ms": 1e3 * preparation,

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.command import command_line, write_json
+from benchmarks.command import command_line, timed, write_json
 from identification.signals import FrequencyResponse
 from identification.subspace.frequency_subspace import FrequencySubspace
 from tests.support.literal_subspace import literal_subspace
@@ -111,13 +111,6 @@ def growth(lines: int, runs: int, clock: Clock) -> dict[str, float]:
         "lines": lines,
         "seconds": statistics.median(timed(lambda: method.estimate(data), clock) for _ in range(runs)),
     }
-
-
-def timed(call: Callable[[], object], clock: Clock) -> float:
-    """Seconds of one call."""
-    start = clock()
-    call()
-    return clock() - start
 
 
 if __name__ == "__main__":
