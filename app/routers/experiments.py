@@ -103,7 +103,7 @@ def _json(text: str) -> Any:
     """What a form field holds as JSON; the text itself, which no schema takes, when it is none."""
     try:
         return json.loads(text)
-    except ValueError:
+    except (ValueError, RecursionError):
         return text
 
 

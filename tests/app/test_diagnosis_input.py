@@ -187,6 +187,7 @@ def test_a_model_of_a_logged_quantity_is_held_against_experiments_that_state_it(
         ([{"name": "t", "value": "warm"}], "/loggedQuantities/0/value"),
         ([{"name": "t"}], "/loggedQuantities/0/value"),
         ("[", "/loggedQuantities"),
+        ("[" * 100_000, "/loggedQuantities"),
         ({"name": "t", "value": 1.0}, "/loggedQuantities"),
     ],
 )
@@ -196,6 +197,21 @@ def test_logged_quantities_are_named_once_and_have_a_value(bench: Bench, plant: 
     assert [one.removeprefix("/timeRecord") for one in bench.refused("/v1/experiments", body)] == [where]
     form = {"plantId": plant, "operatingPoint": "0.0"}
     form["loggedQuantities"] = logged if isinstance(logged, str) else json.dumps(logged)
+    answer = bench.client.post("/v1/experiments/files", data=form, files={"file": ("a.csv", b"time,input,output\n")})
+    assert answer.status_code == 422
+    assert pointers(answer.json()) == [where]
+
+
+@pytest.mark.parametrize(
+    ("text", "where"),
+    [
+        ('[{"name": "t", "value": NaN}]', "/loggedQuantities/0/value"),
+        ('[{"name": "t", "value": 1e999}]', "/loggedQuantities/0/value"),
+        ('[{"name": "\\ud800", "value": 1}]', "/loggedQuantities/0/name"),
+    ],
+)
+def test_numbers_and_texts_in_a_form_are_those_of_json(bench: Bench, plant: str, text: str, where: str) -> None:
+    form = {"plantId": plant, "operatingPoint": "0.0", "loggedQuantities": text}
     answer = bench.client.post("/v1/experiments/files", data=form, files={"file": ("a.csv", b"time,input,output\n")})
     assert answer.status_code == 422
     assert pointers(answer.json()) == [where]
