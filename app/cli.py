@@ -81,11 +81,14 @@ def extend(file: RequestFile, output: Output = None, report: Report = None) -> N
 def demo(
     output: Annotated[Path, typer.Option("--output", "-o", help="folder for the report")] = Path("lpv-oed-demo"),
     seed: Annotated[int, typer.Option(min=0, help="of the noise; the same seed gives the same report")] = 1,
+    hidden: Annotated[
+        str, typer.Option(help="what the plant does that its model does not know, such as delay, or none")
+    ] = "cubic_stiffness",
 ) -> None:
-    """Walk the whole loop on a simulated plant; leaves an HTML report."""
+    """Walk the whole loop on a simulated plant with an effect hidden in it; leaves an HTML report."""
     from app.demo.command import demo as run
 
-    run(output, seed)
+    run(output, seed, hidden)
 
 
 def main() -> None:

@@ -1,212 +1,154 @@
-"""The loop, step by step: a first experiment, a model, a design, signals, a second experiment, a better model."""
+"""The loop walked on a simulated stage: design, measure, fit, see the failure, find what is missing, add it."""
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from app.conversion.models import kept_model
 from app.demo import task
-from app.demo.plant import AirHeater
+from app.demo.laboratory import Laboratory
+from app.jobs.tasks.design import stated_problem
+from app.offline.loop import Loop
+from app.offline.workplace import DESIGN_ID, PLANT_ID, Workplace, stored
+from app.report.chain.documents import Chain, Compared, Played
 from app.report.figures.accuracy import Accuracy
-from identification.arrays import FloatArray
+from app.schemas.designs import Design, DesignRequest
+from app.schemas.diagnoses import Diagnosis
+from app.schemas.models import Model, ModelRequest
+from app.schemas.outcomes import OutcomeDocument
+from app.schemas.plants import Plant
+from app.schemas.signals import Signals, SignalsRequest
+from app.services import designs, models, signals
+from app.services.measured import Measured
+from app.virtual_plant.campaign import SAMPLE_TIME
 from identification.errors import MisuseError
-from identification.estimates import LocalEstimate, LpvEstimate
-from identification.likelihood import prediction_errors
-from identification.lpv.generalised_least_squares import GeneralisedLeastSquares
-from identification.lpv.joint_likelihood import JointLikelihood
-from identification.lti.prediction_error import PredictionError
-from identification.outcome import Outcome
-from identification.signals import FrequencyResponse, OperatingPoint, TimeRecord
-from identification.spectral.periodic_average import PeriodicAverage
-from oed.design import Design, design
-from oed.problem import DesignProblem
-from oed.realisation import RealisedSignal, realise
-from oed.spectra.family import SpectrumFamily
+from identification.models import LpvModel
+from oed.design import design
 from oed.spectra.fir import FirSpectra
-from oed.spectra.lines import LineSpectra
-from oed.targets.parameter_deviation import ParameterDeviation
 
-Heard = Callable[[str], None]
-
-
-@dataclass(frozen=True, eq=False)
-class Campaign:
-    """Records at several operating points, and the local model of each."""
-
-    records: tuple[TimeRecord, ...]
-    local: tuple[LocalEstimate, ...]
-
-    @property
-    def energy(self) -> float:
-        """Σ u² over all records."""
-        return float(sum(np.sum(record.input**2) for record in self.records))
-
-    @property
-    def points(self) -> tuple[OperatingPoint, ...]:
-        """The operating points in order."""
-        return tuple(record.operating_point for record in self.records)
+IDENTIFICATION = {
+    "localEstimator": {"kind": "rational_fit"},
+    "lpvEstimator": {"kind": "joint_likelihood"},
+    "spectralEstimator": {"kind": "periodic_average"},
+}
 
 
 @dataclass(frozen=True, eq=False)
-class DesignedSecond:
-    """The design of the second experiment, how the solver got there, and what other ways would cost."""
+class Designed:
+    """The design of the second experiment, its signals, and the energy that other ways would need."""
 
     design: Design
-    history: tuple[tuple[int, float], ...]
+    played: Played
     alternatives: tuple[tuple[str, float], ...]
 
 
 @dataclass(frozen=True, eq=False)
 class Story:
-    """Everything that happened."""
+    """All that happened: `versions` from the first model to the last, `compared` and `diagnosed` from the second on."""
 
     seed: int
-    first: Campaign
-    initial: LpvEstimate
-    designed: DesignedSecond
-    signals: tuple[RealisedSignal, ...]
-    second: Campaign
-    final: LpvEstimate
+    hidden: str
+    designed: Designed
+    loop: Loop
+    versions: tuple[Model, ...]
+    compared: tuple[Compared, ...]
+    diagnosed: tuple[Diagnosis, ...]
 
     @property
-    def accuracy(self) -> Accuracy:
-        """Standard deviations of θ, asked, expected and reached, and the errors that were made."""
-        expected = np.sqrt(np.diag(self.designed.design.expected_covariance))
-        reached = np.sqrt(np.diag(self.final.model.covariance))
-        error = self.final.model.theta - task.true_model().theta
-        return Accuracy(task.PARAMETERS, task.ASKED, expected, reached, error)
-
-    @property
-    def worst_share(self) -> float:
-        """The largest σ reached over that asked for, over all directions of the parameter space: √λ_max(R P_θ)."""
-        covariance = self.final.model.covariance / np.outer(task.ASKED, task.ASKED)
-        return float(np.sqrt(np.linalg.eigvalsh(covariance)[-1]))
-
-    @property
-    def responses(self) -> tuple[FrequencyResponse, ...]:
-        """Frequency responses measured in the second experiment."""
-        return tuple(PeriodicAverage(drop_periods=1).estimate(record) for record in self.second.records)
-
-    @property
-    def prediction_errors(self) -> tuple[FloatArray, ...]:
-        """Of the final model, on the records of the second experiment."""
-        zeta = self.final.model.coefficients(self.second.points)
-        pairs = zip(zeta, self.second.records, strict=True)
-        return tuple(prediction_errors(task.STRUCTURE, own, record)[0] for own, record in pairs)
-
-
-def first_experiment(plant: AirHeater, generator: np.random.Generator, heard: Heard) -> Campaign:
-    """A random binary signal, white and of the same power everywhere."""
-    inputs = [task.FIRST_POWER * generator.choice([-1.0, 1.0], task.SAMPLES) for _ in task.FIRST_POINTS]
-    return _campaign(plant, [(velocity,) for velocity in task.FIRST_POINTS], inputs, None, generator, heard)
-
-
-def first_model(first: Campaign) -> LpvEstimate:
-    """θ̂₁ and its covariance from the local models."""
-    found = GeneralisedLeastSquares().estimate(task.STRUCTURE, task.DEPENDENCE, first.records, first.local)
-    _require(found.outcome)
-    return found
-
-
-def second_design(first: Campaign, initial: LpvEstimate, heard: Heard) -> DesignedSecond:
-    """The least energy that adds what the first experiment has not told [Ghosh2018, Section 4]."""
-    history: list[tuple[int, float]] = []
-
-    def progress(iteration: int, gap: float) -> None:
-        history.append((iteration, gap))
-        heard(f"iteration {iteration}: gap {gap:.1e}")
-
-    designed = design(second_problem(initial, FirSpectra(task.FIR_DEGREE)), progress)
-    _require(designed.outcome)
-    alternatives = (
-        (f"designed, FIR spectra of degree {task.FIR_DEGREE}", designed.total_energy),
-        ("designed, line spectra", design(second_problem(initial, LineSpectra(task.SAMPLES))).total_energy),
-        ("white noise at the best points", design(second_problem(initial, FirSpectra(0))).total_energy),
-        ("more of the first experiment", energy_of_more(first, initial)),
-    )
-    return DesignedSecond(designed, tuple(history), alternatives)
-
-
-def second_problem(initial: LpvEstimate, family: SpectrumFamily) -> DesignProblem:
-    """The accuracy asked for, with what the first experiment has told as prior information."""
-    wanted = tuple(float(sigma) for sigma in (1 - task.MARGIN) * task.ASKED)
-    return DesignProblem(
-        initial.model,
-        task.GRID,
-        (ParameterDeviation(wanted),),
-        family,
-        task.SAMPLES,
-        prior_information=np.asarray(np.linalg.inv(initial.model.covariance)),
-        tolerance=task.TOLERANCE,
-    )
-
-
-def energy_of_more(first: Campaign, initial: LpvEstimate) -> float:
-    """Energy of repeating the first experiment until it alone has reached the accuracy asked for.
-
-    s times the experiment give s P_θ₁⁻¹ ⪰ R, so s is the largest eigenvalue of R P_θ₁.
-    """
-    sigma = (1 - task.MARGIN) * task.ASKED
-    times = np.linalg.eigvalsh(initial.model.covariance / np.outer(sigma, sigma))[-1]
-    return float(max(times - 1, 0.0) * first.energy)
-
-
-def signals_to_play(designed: Design, generator: np.random.Generator, heard: Heard) -> tuple[RealisedSignal, ...]:
-    """A multisine for each experiment, several periods of it, within the amplitude limit."""
-    played = []
-    for experiment in designed.experiments:
-        heard(task.AXES.point(experiment.operating_point))
-        played.append(
-            realise(
-                experiment,
-                task.PERIOD,
-                task.SAMPLE_TIME,
-                generator=generator,
-                periods=designed.samples // task.PERIOD,
-                amplitude_limit=task.AMPLITUDE_LIMIT,
-            )
+    def chain(self) -> Chain:
+        """For the report."""
+        return self.loop.chain(
+            list(self.versions),
+            list(self.compared),
+            list(self.diagnosed),
+            (self.designed.design,),
+            (self.designed.played,),
         )
-    return tuple(played)
+
+    @property
+    def found(self) -> list[str]:
+        """Kinds of effects that were added."""
+        return [one.kind for one in self.versions[-1].effects]
+
+    def plain(self, model: Model) -> LpvModel:
+        """A model without its effects."""
+        return kept_model(model, self.loop.plant)
+
+    def accuracy(self, model: Model) -> Accuracy:
+        """Standard deviations of θ, asked, expected and reached, and the errors that were made."""
+        expected = np.array(self.designed.design.expected_standard_deviations)
+        error = np.array(model.theta) - task.true_parameters()
+        return Accuracy(task.PARAMETERS, task.ASKED, expected, np.array(model.standard_deviations), error)
 
 
-def second_experiment(
-    plant: AirHeater,
-    designed: Design,
-    signals: Sequence[RealisedSignal],
-    generator: np.random.Generator,
-    heard: Heard,
-) -> Campaign:
-    """The signals played at their operating points."""
-    points = [experiment.operating_point for experiment in designed.experiments]
-    return _campaign(plant, points, [signal.record() for signal in signals], task.PERIOD, generator, heard)
+def identified(place: Workplace, plant: Plant, experiments: list[Measured], name: str) -> Model:
+    """A model from experiments."""
+    names = [one.id for one, _ in experiments]
+    request = ModelRequest.model_validate({"plantId": plant.id, "name": name, "experimentIds": names, **IDENTIFICATION})
+    found = place.run("identification", models.payload(plant, request, experiments))
+    model = Model.model_validate(stored(found.document, name, plantId=PLANT_ID, jobId=None))
+    _require(model.outcome)
+    return model
 
 
-def final_model(first: Campaign, second: Campaign) -> LpvEstimate:
-    """θ̂ from both experiments at once."""
-    estimator = JointLikelihood(initial_conditions="zero")
-    records, local = (*first.records, *second.records), (*first.local, *second.local)
-    found = estimator.estimate(task.STRUCTURE, task.DEPENDENCE, records, local)
-    _require(found.outcome)
-    return found
+def designed_second(place: Workplace, plant: Plant, first: Model, energy: float, seed: int) -> Designed:
+    """The least energy that adds what the first experiment has not told, as signals to play [Ghosh2018, Section 4]."""
+    request = design_request(first)
+    found = place.run("design", designs.payload(plant, first, request))
+    made = Design.model_validate(stored(found.document, DESIGN_ID, plantId=PLANT_ID, jobId=None))
+    _require(made.outcome)
+    if not made.experiments:
+        raise MisuseError("the first experiment happens to be accurate enough already; try another seed", "seed")
+    asked = SignalsRequest(samples=task.PERIOD, periods=task.PERIODS, seed=seed)
+    played = place.run("signals", signals.payload(made, asked))
+    document = Signals.model_validate(stored(played.document, "signals", plantId=PLANT_ID, jobId=None))
+    own = Played(document, place.arrays.get(played.arrays or ""))
+    return Designed(made, own, _alternatives(plant, first, request, made, energy))
 
 
-def _campaign(
-    plant: AirHeater,
-    points: Sequence[OperatingPoint],
-    inputs: Sequence[FloatArray],
-    period: int | None,
-    generator: np.random.Generator,
-    heard: Heard,
-) -> Campaign:
-    records, local = [], []
-    for point, power in zip(points, inputs, strict=True):
-        heard(task.AXES.point(point))
-        temperature = plant.measure(point[0], power, generator)
-        records.append(TimeRecord(power, temperature, task.SAMPLE_TIME, point, period))
-        local.append(PredictionError(initial_conditions="zero").estimate(task.STRUCTURE, records[-1]))
-    return Campaign(tuple(records), tuple(local))
+def design_request(first: Model) -> DesignRequest:
+    """Standard deviations of the four parameters, with what the first experiment has told as prior information."""
+    wanted = [float(sigma) for sigma in (1 - task.MARGIN) * task.ASKED]
+    axis = {"minimum": task.POSITION.minimum, "maximum": task.POSITION.maximum, "count": task.GRID}
+    return DesignRequest.model_validate(
+        {
+            "plantId": PLANT_ID,
+            "modelId": first.id,
+            "operatingPoints": {"kind": "gridAxes", "axes": [axis]},
+            "targets": [{"kind": "parameter_deviation", "standardDeviations": wanted}],
+            "spectrumFamily": {"kind": "lines", "samples": task.PERIOD},
+            "samples": task.PERIOD * task.PERIODS,
+            "sampleTimeSeconds": SAMPLE_TIME,
+            "band": {"minimumRadPerSecond": task.BAND[0], "maximumRadPerSecond": task.BAND[1]},
+            "usePriorInformation": True,
+            "tolerance": task.TOLERANCE,
+        }
+    )
 
 
-def _require(outcome: Outcome) -> None:
-    if not outcome.ok:
+def _alternatives(
+    plant: Plant, first: Model, request: DesignRequest, made: Design, energy: float
+) -> tuple[tuple[str, float], ...]:
+    """Energies: as designed; white noise at the best positions; repeating the first experiment.
+
+    s times the first experiment give s P_θ₁⁻¹ ⪰ R, so s is the largest eigenvalue of R P_θ₁.
+    """
+    known = kept_model(first, plant)
+    problem = replace(stated_problem(request, known, True), family=FirSpectra(0), band=None)
+    sigma = (1 - task.MARGIN) * task.ASKED
+    times = float(np.linalg.eigvalsh(known.covariance / np.outer(sigma, sigma))[-1])
+    return (
+        ("designed", made.total_energy or 0.0),
+        ("white noise at the best positions", design(problem).total_energy),
+        ("more of the first experiment", max(times - 1, 0.0) * energy),
+    )
+
+
+def energy_of(lab: Laboratory, experiments: list[Measured]) -> float:
+    """Σ u² over all samples of all experiments."""
+    return float(sum(np.sum(lab.place.arrays.get(arrays)["input"] ** 2) for _, arrays in experiments))
+
+
+def _require(outcome: OutcomeDocument) -> None:
+    if outcome.status != "converged":
         raise MisuseError(f"the demonstration cannot go on: {outcome.advice}; try another seed", "seed")

@@ -1,25 +1,24 @@
 """What the demonstration writes to the terminal, or to a file or pipe in its place."""
 
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from pathlib import Path
 
 from rich.console import Console
 from rich.markup import escape
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table as RichTable
 
-from app.demo.charts import bar
-from app.demo.story import Heard
+from app.demo.charts import bar, shaded
 from app.report.document import Table
+from app.report.figures.misfit_map import MapRow
 from app.report.numbers import significant
 
 INDENT = "      "
 BAR_WIDTH = 28
+MAP_WIDTH = 42
 
 
 class Terminal:
-    """Steps, sentences, tables and bars; a moving progress bar on a terminal, a line a step anywhere else."""
+    """Steps, sentences, tables, bars and maps."""
 
     def __init__(self, console: Console, steps: int) -> None:
         self._console = console
@@ -69,22 +68,14 @@ class Terminal:
             )
         self._indented(shown)
 
-    @contextmanager
-    def progress(self, what: str, total: int | None) -> Iterator[Heard]:
-        """Gives the function that is told each item of a step as it begins."""
-        if not self._console.is_terminal:
-            yield lambda item: self.say(f"{what}: {item}")
-            return
-        columns = (TextColumn(INDENT + "{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
-        with Progress(*columns, console=self._console, transient=True) as bars:
-            shown = bars.add_task(what, total=total)
-            begun: list[str] = []
-
-            def heard(item: str) -> None:
-                bars.update(shown, description=f"{what}: {item}", completed=len(begun))
-                begun.append(item)
-
-            yield heard
+    def map(self, rows: Sequence[MapRow], low: float, high: float) -> None:
+        """Where the residuals are larger than noise: a line an experiment, over the logarithm of frequency."""
+        shown = RichTable(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="dim")
+        shown.add_column("experiment", no_wrap=True)
+        shown.add_column(f"residual/noise, {low:g} to {high:g} rad/s; █: > 10", no_wrap=True)
+        for row in sorted(rows, key=lambda one: one.held_out):
+            shown.add_row(escape(row.label), f"[cyan]▕{shaded(row, low, high, MAP_WIDTH)}▏[/cyan]")
+        self._indented(shown)
 
     def _indented(self, shown: RichTable) -> None:
         grid = RichTable.grid()

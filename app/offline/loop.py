@@ -19,7 +19,7 @@ from app.services import comparisons, diagnoses, extensions
 from app.services.measured import Measured
 
 if TYPE_CHECKING:
-    from app.report.chain.documents import Chain, Compared
+    from app.report.chain.documents import Chain, Compared, Played
 
 HELD_OUT = "heldOut"
 
@@ -77,6 +77,7 @@ class Loop:
         compared: list["Compared"],
         diagnosed: list[Diagnosis],
         designed: tuple[Design, ...] = (),
+        played: tuple["Played", ...] = (),
     ) -> "Chain":
         """All of it for a report."""
         from app.report.chain.documents import Chain
@@ -90,6 +91,7 @@ class Loop:
             designed,
             tuple(compared),
             tuple(diagnosed),
+            played,
         )
 
 

@@ -46,9 +46,9 @@ def stored(document: dict[str, Any], identifier: str, **more: Any) -> dict[str, 
 
 
 @contextmanager
-def workplace() -> Iterator[Workplace]:
-    """A workplace; its arrays are removed at the end."""
+def workplace(console: Console | None = None) -> Iterator[Workplace]:
+    """A workplace that shows progress on a console, standard error unless given; its arrays are removed at the end."""
     with TemporaryDirectory(prefix="lpv-oed-") as folder:
         store = ArrayStore(Path(folder), MAX_ARRAY_BYTES)
         store.prepare()
-        yield Workplace(store, Console(stderr=True))
+        yield Workplace(store, console or Console(stderr=True))

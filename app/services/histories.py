@@ -16,7 +16,8 @@ PAGE = 100
 
 @dataclass(frozen=True)
 class History:
-    """Rows of versions (oldest first), experiments, designs, and the latest comparison and diagnosis of each version.
+    """Rows of versions (oldest first), experiments, designs, the latest comparison and diagnosis of each version, and
+    the latest signals of each design.
 
     The diagnosis of a version that was extended is the one that pointed to the effect, where it is known.
     """
@@ -26,6 +27,7 @@ class History:
     designs: tuple[Resource, ...]
     comparisons: tuple[Resource, ...]
     diagnoses: tuple[Resource, ...]
+    signals: tuple[Resource, ...]
 
 
 def history(resources: ResourceRepository, model: Resource) -> History:
@@ -44,7 +46,10 @@ def history(resources: ResourceRepository, model: Resource) -> History:
     names += [name for row in diagnoses for name in diagnosis_of(row).experiment_ids]
     experiments = _found(resources, "experiments", names)
     designs = [one.design_id for one in versions] + [experiment_of(row).design_id for row in experiments]
-    return History(rows, experiments, _found(resources, "designs", designs), comparisons, diagnoses)
+    designed = _found(resources, "designs", designs)
+    played = _rows_of_plant(resources, "signals", model.plant_id) if designed else ()
+    signals = _latest(played, designed, {}, "designId")
+    return History(rows, experiments, designed, comparisons, diagnoses, signals)
 
 
 def _versions(resources: ResourceRepository, latest: Resource) -> tuple[Resource, ...]:
@@ -74,15 +79,18 @@ def _rows_of_plant(resources: ResourceRepository, kind: str, plant_id: str | Non
 
 
 def _latest(
-    newest_first: Iterable[Resource], versions: Sequence[Resource], preferred: dict[str, str | None]
+    newest_first: Iterable[Resource],
+    subjects: Sequence[Resource],
+    preferred: dict[str, str | None],
+    of: str = "modelId",
 ) -> tuple[Resource, ...]:
-    """One row a version that has any, in the order of the versions."""
+    """One row a subject that has any, in the order of the subjects; `of` is the field that names the subject."""
     chosen: dict[str, Resource] = {}
     for row in newest_first:
-        model_id = row.document["modelId"]
-        if model_id not in chosen or preferred.get(model_id) == row.id:
-            chosen[model_id] = row
-    return tuple(chosen[version.id] for version in versions if version.id in chosen)
+        name = row.document[of]
+        if name not in chosen or preferred.get(name) == row.id:
+            chosen[name] = row
+    return tuple(chosen[one.id] for one in subjects if one.id in chosen)
 
 
 def _found(resources: ResourceRepository, kind: str, names: Iterable[Any]) -> tuple[Resource, ...]:

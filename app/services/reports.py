@@ -14,6 +14,7 @@ from app.services.histories import History, history
 from app.services.jobs import fingerprint
 from app.services.models import model_of
 from app.services.plants import plant_of
+from app.services.signals import signals_of
 from app.store.resources import Resource, ResourceRepository
 
 KIND = "reports"
@@ -37,6 +38,7 @@ def payload(found: History) -> dict[str, Any]:
         "designs": [design_of(row).as_json() for row in found.designs],
         "comparisons": [{"document": comparison_of(row).as_json(), "arrays": row.arrays} for row in found.comparisons],
         "diagnoses": [diagnosis_of(row).as_json() for row in found.diagnoses],
+        "signals": [{"document": signals_of(row).as_json(), "arrays": row.arrays} for row in found.signals],
     }
 
 

@@ -35,11 +35,12 @@ def test_the_library(repository: Path, tmp_path: Path) -> None:
 
 @pytest.mark.skipif(not (shutil.which("curl") and shutil.which("bash")), reason="needs bash and curl")
 def test_the_service(repository: Path, tmp_path: Path, server: Server) -> None:
-    (code,) = blocks(repository, "sh")
-    code = code.replace("http://127.0.0.1:8000", server.url)
+    code = "\n".join(blocks(repository, "sh")).replace("http://127.0.0.1:8000", server.url)
     assert server.url in code
-    energy = shown(["bash", "-euo", "pipefail", "-c", code], tmp_path, repository)
+    energy, effect = shown(["bash", "-euo", "pipefail", "-c", code], tmp_path, repository).split()
     assert float(energy) == pytest.approx(3510.4, rel=2e-2)
+    assert effect == "quadratic_damping"
     lines = (tmp_path / "signal-0.csv").read_text().splitlines()
     assert lines[0] == "time,input"
     assert len(lines) == 1001
+    assert "How the error fell" in (tmp_path / "report.html").read_text()

@@ -51,6 +51,7 @@ def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
             structure, dependence, data, local, prior=prior and kept_model(prior, plant)
         )
         require_finite(estimate.model)
+    estimate = _with_output_noise(estimate, experiments, measured, data)
     return TaskResult(_document(plant, request, estimate, experiments, data, local))
 
 
@@ -65,6 +66,25 @@ def _fitted_data(
     with field_named({}, f"/experimentIds/{index}"), within_doubles():
         response: FrequencyResponse = request.spectral_estimator.build().estimate(record)
     return response if structure.is_discrete else dataclasses.replace(response, sample_time=None)
+
+
+def _with_output_noise(
+    estimate: LpvEstimate,
+    experiments: Sequence[Experiment],
+    measured: Sequence[Measurement],
+    data: Sequence[Measurement],
+) -> LpvEstimate:
+    """The noise variance of the output in its unit, as designs need it, where responses of records were fitted.
+
+    Fits of responses give it as a factor on the variances of the responses only.
+    """
+    levels = [experiment.understood.noise_level for experiment in experiments]
+    known = [level for level in levels if level is not None and level > 0]
+    records = all(isinstance(one, TimeRecord) for one in measured)
+    if not records or len(known) < len(levels) or any(isinstance(one, TimeRecord) for one in data):
+        return estimate
+    variance = sum(level**2 for level in known) / len(known)
+    return dataclasses.replace(estimate, model=dataclasses.replace(estimate.model, noise_variance=variance))
 
 
 def _local_estimates(

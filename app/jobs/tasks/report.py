@@ -8,7 +8,7 @@ from app import __version__
 from app.conversion.experiments import kept_measurement
 from app.jobs.task import TaskContext, TaskResult
 from app.report.chain.build import chain_report
-from app.report.chain.documents import Chain, Compared
+from app.report.chain.documents import Chain, Compared, Played
 from app.report.page import render
 from app.schemas.comparisons import Comparison
 from app.schemas.designs import Design
@@ -16,6 +16,7 @@ from app.schemas.diagnoses import Diagnosis
 from app.schemas.experiments import Experiment
 from app.schemas.models import Model
 from app.schemas.plants import Plant
+from app.schemas.signals import Signals
 from identification.signals import Measurement
 
 KIND = "report"
@@ -60,4 +61,8 @@ def _chain(payload: dict[str, Any], context: TaskContext) -> Chain:
             for one in payload["comparisons"]
         ),
         tuple(map(Diagnosis.model_validate, payload["diagnoses"])),
+        tuple(
+            Played(Signals.model_validate(one["document"]), context.arrays.get(one["arrays"]))
+            for one in payload["signals"]
+        ),
     )

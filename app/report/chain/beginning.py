@@ -7,6 +7,7 @@ from app.report.axes import labelled
 from app.report.chain.documents import Chain
 from app.report.document import Plot, Section, Table
 from app.report.figures.energies import energy_per_point
+from app.report.figures.signals import signal_table, signals
 from app.report.figures.spectra import spectra
 from app.report.numbers import percent, significant
 from app.schemas.designs import Design
@@ -67,6 +68,13 @@ def design_section(chain: Chain, design: Design) -> Section:
         offered = candidate_points(design.request, plant_dependence(chain.plant))
         blocks.append(energy_per_point(made, offered, chain.axes))
         blocks.append(spectra(made, design.samples, design.sample_time_seconds, chain.axes))
+    for played in chain.signals:
+        if played.document.design_id == design.id:
+            points = [tuple(one.operating_point) for one in played.document.signals]
+            blocks += [
+                signal_table(points, played.realised(), chain.axes),
+                signals(points, played.realised(), chain.axes),
+            ]
     text = (
         "The operating points and input spectra of least energy that give the accuracy asked for, and a bound below"
         " which no design of this kind can fall.",
@@ -76,13 +84,13 @@ def design_section(chain: Chain, design: Design) -> Section:
 
 def _certificate(chain: Chain, design: Design) -> Table:
     unit = chain.axes.energy_unit
-    numbers = (
+    numbers: list[tuple[str, float | None, int]] = [
         (labelled("energy of the design (primal value)", unit), design.total_energy, 6),
         (labelled("no design can need less than (dual value)", unit), design.lower_bound, 6),
         ("relative gap", design.gap, 2),
-        ("samples of each experiment", design.samples, 6),
-    )
+    ]
     rows = [(name, "–" if value is None else significant(value, digits)) for name, value, digits in numbers]
+    rows.append(("samples of each experiment", str(design.samples)))
     targets = [binding for binding in design.binding if binding.what == "target" and binding.multiplier is not None]
     for binding in targets if len(targets) > 1 else ():
         target = f"target {1 + (binding.target_index or 0)}"

@@ -18,9 +18,11 @@ from app.schemas.diagnoses import Diagnosis
 from app.schemas.experiments import Experiment
 from app.schemas.models import ErrorsDocument, Model
 from app.schemas.plants import ContinuousTimeStructure, DiscreteTimeStructure, Plant
+from app.schemas.signals import SignalDocument, Signals
 from identification.extension.model import ExtendedModel
 from identification.scheduling import SchedulingVariable
 from identification.signals import Measurement
+from oed.realisation.realised_signal import RealisedSignal
 
 Arrays = Mapping[str, NDArray[Any]]
 
@@ -31,6 +33,37 @@ class Compared:
 
     document: Comparison
     arrays: Arrays
+
+
+@dataclass(frozen=True, eq=False)
+class Played:
+    """The signals of a design with one period of each."""
+
+    document: Signals
+    arrays: Arrays
+
+    def realised(self) -> list[RealisedSignal]:
+        """The signals as they are played."""
+        return [self._realised(one) for one in self.document.signals]
+
+    def _realised(self, one: SignalDocument) -> RealisedSignal:
+        period = np.asarray(self.arrays[f"period{one.index}"])
+        requested, achieved = np.zeros(len(period) // 2 + 1), np.zeros(len(period) // 2 + 1)
+        lines = np.rint(np.array(one.frequencies_rad_per_second) * len(period) * one.sample_time_seconds / (2 * np.pi))
+        requested[lines.astype(int)], achieved[lines.astype(int)] = one.requested_energies, one.achieved_energies
+        return RealisedSignal(
+            period,
+            one.periods,
+            one.sample_time_seconds,
+            self.document.request.method,
+            one.crest_factor,
+            one.crest_factor_between_samples,
+            requested,
+            achieved,
+            one.amplitude_limit,
+            one.amplitude_limit_binds,
+            one.needed_samples,
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,6 +80,7 @@ class Chain:
     designs: tuple[Design, ...] = ()
     comparisons: tuple[Compared, ...] = ()
     diagnoses: tuple[Diagnosis, ...] = ()
+    signals: tuple[Played, ...] = ()
 
     @property
     def model(self) -> Model:

@@ -5,6 +5,7 @@ import numpy as np
 from app.report.chain.documents import Chain, Compared
 from app.report.document import Plot, Section, Table
 from app.report.effect_text import amplitude
+from app.report.figures.bode import bode
 from app.report.figures.effects import confusability, ranking, visibility
 from app.report.figures.misfit import misfit_by_band, misfit_by_class, misfit_by_point, overall_table
 from app.report.figures.misfit_map import misfit_map
@@ -14,10 +15,14 @@ from app.report.figures.versions import side_by_side
 from app.report.numbers import estimate, percent, significant
 from app.schemas.diagnoses import Diagnosis
 from app.schemas.models import Model
+from identification.arrays import FloatArray
 from identification.comparison.gather import gather
 from identification.errors import MisuseError
+from identification.models import LpvModel
+from identification.signals import OperatingPoint
 
 FINE = 81
+FREQUENCIES = 201
 MOST_PARAMETERS = 200
 VERDICTS = {
     "nothingMissing": "Nothing is missing that these experiments could show.",
@@ -39,7 +44,7 @@ def model_section(chain: Chain, number: int) -> Section:
     if model.effects:
         rows = tuple((one.title, one.place, amplitude(one)) for one in model.effects)
         blocks.append(Table(("effect", "acts", "amplitude ± σ"), rows, text_columns=3))
-    blocks += _poles(chain, model)
+    blocks += _curves(chain, model)
     title = f"Version {number + 1}: {chain.version_name(model)}"
     return Section(title, (text.get(model.origin, ""),), tuple(blocks))
 
@@ -51,14 +56,28 @@ def _parameters(model: Model) -> Table:
     return Table(("parameter", "estimate ± σ"), rows)
 
 
-def _poles(chain: Chain, model: Model) -> list[Plot]:
-    """Over one scheduling variable, where no effect changes them and their accuracy is known."""
+def _curves(chain: Chain, model: Model) -> list[Plot]:
+    """Bode plot and poles over one scheduling variable, where there are no effects and the accuracy is known."""
     known = chain.rational(model)
     if known is None or known.effects or model.covariance is None or len(chain.axes.variables) != 1:
         return []
     variable = chain.axes.variables[0]
     along = np.linspace(variable.minimum, variable.maximum, FINE)[:, None]
-    return [poles(known.base, along, chain.axes)] if known.base.structure.n_a else []
+    some: list[OperatingPoint] = [(float(p),) for p in along[[0, FINE // 2, -1], 0]]
+    plots = [bode(known.base, some, _frequencies(chain, known.base), chain.axes)]
+    return [*plots, poles(known.base, along, chain.axes)] if known.base.structure.n_a else plots
+
+
+def _frequencies(chain: Chain, model: LpvModel) -> FloatArray:
+    """Those that were excited; without experiments two decades up to the Nyquist frequency or around the scale."""
+    known = [one.understood for one in chain.experiments]
+    low = [one.minimum_frequency_rad_per_second for one in known if one.minimum_frequency_rad_per_second]
+    high = [one.maximum_frequency_rad_per_second for one in known if one.maximum_frequency_rad_per_second]
+    if low and high and min(low) < max(high):
+        return np.geomspace(min(low), max(high), FREQUENCIES)
+    step = model.structure.sample_time
+    top = 10 * model.structure.frequency_scale if step is None else np.pi / step
+    return np.geomspace(top / 100, top, FREQUENCIES)
 
 
 def comparison_section(chain: Chain, compared: Compared, number: int) -> Section:
@@ -108,8 +127,9 @@ def diagnosis_section(chain: Chain, diagnosis: Diagnosis, number: int) -> Sectio
 
 
 def side_by_side_plots(chain: Chain) -> list[Plot]:
-    """The first and the latest version in up to three experiments, held-out ones before others."""
-    ends = [chain.versions[0], chain.versions[-1]] if len(chain.versions) > 1 else [chain.versions[0]]
+    """The last version without effects and the latest one in up to three experiments, held-out ones before others."""
+    plain = [model for model in chain.versions if not model.effects] or [chain.versions[0]]
+    ends = [plain[-1]] if chain.model is plain[-1] else [plain[-1], chain.model]
     known = [(chain.version_name(model), chain.rational(model)) for model in ends]
     versions = [(name, model) for name, model in known if model is not None]
     fitted = {name for model in chain.versions for name in model.experiment_ids}

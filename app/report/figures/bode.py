@@ -40,9 +40,9 @@ def bode(
     figure.update_yaxes(type="log", title=axes.gain_unit, dtick=1, row=1, col=1)
     figure.update_yaxes(title="degrees", row=2, col=1)
     figure.update_layout(margin={"t": 70}, legend={"y": 1.07})
-    caption = "Frequency response of the model with 95 % bands; dots are measured to better than 30 %" + (
-        ", the broad line is the truth." if truth is not None else "."
-    )
+    caption = "Frequency response of the model with 95 % bands"
+    caption += "; dots are measured to better than 30 %" if measured else ""
+    caption += "; the broad line is the truth." if truth is not None else "."
     return Plot(figure, caption, _table(model, points, omega, axes, truth))
 
 

@@ -32,6 +32,24 @@ class MapRow:
         z = self.residual if chosen is None else self.residual[chosen.astype(bool)]
         return float(np.sqrt(np.mean(abs(z) ** 2))) if len(z) else float("nan")
 
+    def cells(self, excited: bool, edges: FloatArray) -> FloatArray:
+        """Root mean square of z at excited or other lines between `edges` (C + 1,), as (C,).
+
+        A cell without lines takes the nearest one's where the lines lie farther apart than cells, else not a number.
+        """
+        chosen = (self.classes == EXCITED) == excited
+        frequencies, power = self.frequencies[chosen], abs(self.residual[chosen]) ** 2
+        count, total = (np.histogram(frequencies, edges, weights=w)[0] for w in (None, power))
+        with np.errstate(invalid="ignore"):
+            values = np.sqrt(total / count)
+        for i in np.flatnonzero(count == 0) if len(frequencies) else ():
+            middle = np.sqrt(edges[i] * edges[i + 1])
+            nearest = int(np.argmin(abs(frequencies - middle)))
+            gap = np.diff(frequencies)[max(nearest - 1, 0) : nearest + 1].max(initial=0.0)
+            if abs(frequencies[nearest] - middle) <= gap:
+                values[i] = np.sqrt(power[nearest])
+        return np.asarray(values)
+
 
 def misfit_map(rows: Sequence[MapRow]) -> Plot:
     """A map for excited lines and one for the others, of what was fitted and of what was held out."""
@@ -85,7 +103,7 @@ def _edges(rows: Sequence[MapRow]) -> FloatArray:
 
 
 def _add_map(figure: go.Figure, rows: Sequence[MapRow], excited: bool, edges: FloatArray, place: int) -> None:
-    values = np.stack([_cells(row, excited, edges) for row in rows])
+    values = np.stack([row.cells(excited, edges) for row in rows])
     figure.add_heatmap(
         x=edges,
         y=np.arange(len(rows)),
@@ -98,25 +116,6 @@ def _add_map(figure: go.Figure, rows: Sequence[MapRow], excited: bool, edges: Fl
     )
     labels = {"tickvals": list(range(len(rows))), "ticktext": [row.label for row in rows]}
     figure.update_yaxes(tickmode="array", showgrid=False, row=place, col=1, **labels)
-
-
-def _cells(row: MapRow, excited: bool, edges: FloatArray) -> FloatArray:
-    """Root mean square of z in each cell; an empty cell takes that of the nearest line, if one is near."""
-    chosen = (row.classes == EXCITED) == excited
-    frequencies, power = row.frequencies[chosen], abs(row.residual[chosen]) ** 2
-    cell = np.digitize(frequencies, edges) - 1
-    inside = (cell >= 0) & (cell < CELLS)
-    count = np.bincount(cell[inside], minlength=CELLS)
-    total = np.bincount(cell[inside], power[inside], minlength=CELLS)
-    with np.errstate(invalid="ignore"):
-        values = np.sqrt(total / count)
-    middle = np.sqrt(edges[1:] * edges[:-1])
-    for i in np.flatnonzero(count == 0):
-        nearest = int(np.argmin(abs(np.log(np.maximum(frequencies, 1e-300) / middle[i]))))
-        gap = np.diff(frequencies)[max(nearest - 1, 0) : nearest + 1].max(initial=0.0)
-        if abs(frequencies[nearest] - middle[i]) <= gap:
-            values[i] = np.sqrt(power[nearest])
-    return np.asarray(values)
 
 
 def _colours() -> dict[str, object]:

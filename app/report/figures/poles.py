@@ -9,7 +9,7 @@ from app.report.axes import Axes
 from app.report.deviations import local_poles, poles_of
 from app.report.document import Plot, Table
 from app.report.numbers import estimate, significant
-from app.report.style import NEUTRAL, add_band, add_truth, colour, new_figure
+from app.report.style import add_band, add_truth, colour, new_figure
 from identification.arrays import FloatArray
 from identification.confidence import QUANTILE_95
 from identification.estimates import LocalEstimate
@@ -40,40 +40,9 @@ def poles(
         figure.update_yaxes(title=f"{part}{unit}", row=row, col=1)
     figure.update_xaxes(title=axes.scheduling, row=len(parts), col=1)
     where = " in the z-plane" if model.structure.is_discrete else ""
-    caption = f"Poles of the model{where} with their 95 % bands; circles, local estimates with their 95 % intervals."
+    caption = f"Poles of the model{where} with their 95 % bands"
+    caption += "; circles, local estimates with their 95 % intervals." if local else "."
     return Plot(figure, caption, _table(model, points, axes, truth))
-
-
-def pole_accuracy(
-    models: Sequence[tuple[str, LpvModel]], points: FloatArray, axes: Axes, truth: LpvModel | None = None
-) -> Plot:
-    """95 % bands of the real parts of the poles of models, later ones better; errors where the truth is known."""
-    count = models[0][1].structure.n_a
-    figure = new_figure([f"pole {i + 1}" for i in range(count)] if count > 1 else ("",), height=110 + 190 * count)
-    hues = (NEUTRAL, *(colour(i) for i in range(len(models))))
-    for (name, model), hue in zip(models, hues, strict=False):
-        found = poles_of(model, points)
-        for i in range(count):
-            half, x = QUANTILE_95 * found.real_deviation[:, i], points[:, 0]
-            add_band(figure, x, -half, half, hue, i + 1, 0.3, name, show=truth is None and i == 0)
-            if truth is not None:
-                error = found.values.real[:, i] - poles_of(truth, points).values.real[:, i]
-                line = {"color": hue, "width": 2}
-                figure.add_scatter(
-                    x=x,
-                    y=error,
-                    mode="lines",
-                    line=line,
-                    name=name,
-                    legendgroup=name,
-                    showlegend=i == 0,
-                    row=i + 1,
-                    col=1,
-                )
-    figure.update_yaxes(title="real part", exponentformat="power")
-    figure.update_xaxes(title=axes.scheduling, row=count, col=1)
-    shown = "Error of the poles (curves) and their 95 % bands (areas)" if truth else "95 % bands of the poles"
-    return Plot(figure, f"{shown} over the operating points.", _accuracy_table(models, points, axes))
 
 
 def _add_model(figure: go.Figure, model: LpvModel, points: FloatArray, row: int) -> None:
@@ -120,16 +89,6 @@ def _table(model: LpvModel, points: FloatArray, axes: Axes, truth: LpvModel | No
             rows.append(row if true is None else (*row, _complex(true[m, x])))
     heads = ("operating point", "real part ± standard deviation", "imaginary part ± standard deviation")
     return Table(heads if true is None else (*heads, "truth"), tuple(rows))
-
-
-def _accuracy_table(models: Sequence[tuple[str, LpvModel]], points: FloatArray, axes: Axes) -> Table:
-    chosen = _some(points)
-    deviations = [QUANTILE_95 * poles_of(model, chosen).real_deviation for _, model in models]
-    rows = []
-    for m, point in enumerate(chosen):
-        each = (", ".join(f"±{significant(value, 2)}" for value in deviation[m]) for deviation in deviations)
-        rows.append((axes.point(tuple(point)), *each))
-    return Table(("operating point", *(name for name, _ in models)), tuple(rows), "95 % half-widths of the real parts")
 
 
 def _some(points: FloatArray) -> FloatArray:

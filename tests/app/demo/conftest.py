@@ -1,6 +1,7 @@
 """One walk through the demonstration, shared by its tests."""
 
 import io
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import pytest
@@ -9,6 +10,7 @@ from rich.console import Console
 from app.demo.run import STEPS, tell
 from app.demo.story import Story
 from app.demo.terminal import Terminal
+from app.offline.workplace import workplace
 
 
 @dataclass(frozen=True)
@@ -20,9 +22,10 @@ class Told:
 
 
 @pytest.fixture(scope="session")
-def told() -> Told:
+def told() -> Iterator[Told]:
     """The story of the first seed, written to a pipe 100 characters wide."""
     console = Console(file=io.StringIO(), width=100)
-    story = tell(1, Terminal(console, STEPS))
-    assert isinstance(console.file, io.StringIO)
-    return Told(story, console.file.getvalue())
+    with workplace(Console(quiet=True)) as place:
+        story = tell(1, Terminal(console, STEPS), place)
+        assert isinstance(console.file, io.StringIO)
+        yield Told(story, console.file.getvalue())

@@ -31,22 +31,31 @@ def test_a_folder_that_cannot_be_made_is_a_message(tmp_path: Path) -> None:
     assert isinstance(result.exception, SystemExit)
 
 
+def test_an_unknown_effect_is_a_message(tmp_path: Path) -> None:
+    result = CliRunner().invoke(application, ["demo", "--output", str(tmp_path), "--hidden", "goblin"])
+    assert result.exit_code == 1
+    assert "the stage cannot hide goblin" in result.output + result.stderr
+
+
 def test_the_report_shows_every_step(told: Told) -> None:
     sections = demo_report(told.story).sections
     plots = [block for section in sections for block in section.blocks if isinstance(block, Plot)]
     shown = " ".join(plot.caption for plot in plots)
     for word in (
-        "energy",
+        "Input energy",
         "Spectrum",
         "period",
         "Frequency response",
         "95 % band",
         "Poles",
         "Standard deviation",
-        "gap",
+        "residuals divided",
+        "Effects fitted",
+        "missing from the frequency response",
+        "each version",
     ):
         assert word in shown
-    assert len(plots) >= 10
+    assert len(plots) >= 20
 
 
 def test_the_report_names_no_time_and_no_place(told: Told) -> None:

@@ -10,8 +10,7 @@ from app.report.axes import Axes
 from app.report.document import Plot
 from app.report.figures.bode import bode, gain_accuracy
 from app.report.figures.energies import energy_comparison, energy_per_point
-from app.report.figures.poles import pole_accuracy, poles
-from app.report.figures.residuals import autocorrelation
+from app.report.figures.poles import poles
 from app.report.figures.spectra import spectra
 from identification.signals import FrequencyResponse
 from oed.design import DesignedExperiment
@@ -75,7 +74,6 @@ def test_complex_poles_have_two_parts() -> None:
     "make",
     [
         lambda: poles(resonance(None), POINTS, AXES),
-        lambda: pole_accuracy([("one", resonance()), ("two", resonance())], POINTS, AXES),
         lambda: gain_accuracy([("one", resonance())], [(0.0,), (2.0,)], OMEGA, AXES),
         lambda: bode(resonance(None), [(0.0,)], OMEGA, AXES),
         lambda: spectra(EXPERIMENTS, 64, 0.5, AXES),
@@ -102,8 +100,3 @@ def test_energies_are_compared_with_the_first() -> None:
     plot = energy_comparison((("designed", 200.0), ("white", 500.0)), AXES)
     assert [row[1:] for row in plot.table.rows] == [("200.0", "100 %"), ("500.0", "250 %")]
     assert energy_per_point(EXPERIMENTS, POINTS, AXES).table.rows[-1] == ("all", "60.00", "100 %")
-
-
-def test_autocorrelation_has_the_sign_of_the_memory() -> None:
-    alternating = np.where(np.arange(400) % 2 == 0, 1.0, -1.0)
-    np.testing.assert_allclose(autocorrelation(alternating, 2), [-399 / 400, 398 / 400])
