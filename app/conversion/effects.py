@@ -8,7 +8,7 @@ import numpy as np
 
 from app.arrays import finite_list_or_none
 from app.conversion.models import kept_model
-from app.conversion.varying_models import kept_estimate
+from app.conversion.varying_models import kept_estimate, kept_joint_covariance
 from app.schemas.effects import EffectParameter, PlacedEffectDocument
 from app.schemas.models import Model
 from app.schemas.plants import Plant
@@ -28,7 +28,8 @@ def effect_of(kind: str) -> Effect | None:
 def extended_model(model: Model, plant: Plant) -> ExtendedModel:
     """The model of a document with the effects that it carries; raises MisuseError where there is no such form."""
     if model.varying is not None:
-        return frozen(kept_estimate(model, plant)).model
+        joint = kept_joint_covariance(model, plant)
+        return frozen(kept_estimate(model, plant), tuple(map(placed_effect, model.effects)), joint)
     covariance = None if model.joint_covariance is None else np.array(model.joint_covariance)
     return ExtendedModel(kept_model(model, plant), tuple(map(placed_effect, model.effects)), covariance)
 

@@ -5,17 +5,42 @@ from typing import Any
 from app.arrays import finite_list_or_none
 from app.conversion.effects import effect_documents
 from app.conversion.models import accuracy_documents, range_documents
+from app.conversion.varying_models import eigenvalue_documents, joint_document, model_parts, state_space_part
+from app.schemas.models import Model
 from identification.extension.model import ExtendedModel
 from identification.extension.response import coefficients
+from identification.varying.frozen import affine_estimate
 
 
 def joint_names(model: ExtendedModel) -> list[str]:
     """Names of θ_G, then of the parameters of each effect, such as cubic_stiffness.e[0], resonance.frequency."""
-    names = list(model.base.parameter_names[: model.base.plant_size])
+    return [*model.base.parameter_names[: model.base.plant_size], *effect_names(model)]
+
+
+def effect_names(model: ExtendedModel) -> list[str]:
+    """Names of the parameters of each effect."""
+    names = []
     for one in model.effects:
         names += [f"{one.effect.kind}.e[{i}]" for i in range(one.size)]
         names += [f"{one.effect.kind}.{name}" for name in one.effect.fitted_names()]
     return names
+
+
+def extended_affine_documents(model: ExtendedModel, parent: Model) -> dict[str, Any]:
+    """The same of a model from varying scheduling; fits along p(t) are not those of a model with effects."""
+    estimate, joint = affine_estimate(model)
+    parts = model_parts(estimate)
+    assert parent.varying is not None, "a version of a model from varying scheduling"
+    update: dict[str, Any] = {"steady": None, "fits": [], "warnings": [], "starting_outcome": ""}
+    varying = parent.varying.model_copy(update={**update, "eigenvalues": eigenvalue_documents(estimate)})
+    return {
+        **{name: value for name, value in parts.items() if name not in ("outcome", "tests")},
+        "stateSpace": state_space_part(estimate.model),
+        "varying": varying.as_json(),
+        "effects": [one.as_json() for one in effect_documents(model)],
+        "jointParameterNames": [*parts["parameterNames"], *effect_names(model)],
+        "jointCovariance": joint_document(estimate.model, joint),
+    }
 
 
 def extended_documents(model: ExtendedModel) -> dict[str, Any]:

@@ -123,6 +123,28 @@ def kept_estimate(model: Model, plant: Plant) -> AffineEstimate:
     return AffineEstimate(affine, Outcome(model.outcome.status, model.outcome.advice), (), covariance)
 
 
+def kept_joint_covariance(model: Model, plant: Plant) -> FloatArray | None:
+    """The joint covariance of θ and the effects of a document, θ in the order of `AffineSizes`."""
+    if model.joint_covariance is None:
+        return None
+    joint = np.array(model.joint_covariance)
+    places = _joint_places(kept_estimate(model, plant).model, len(joint))
+    return np.asarray(joint[np.ix_(np.argsort(places), np.argsort(places))])
+
+
+def joint_document(model: AffineStateSpace, joint: FloatArray | None) -> Any:
+    """The joint covariance of θ and the effects, θ in the order of documents."""
+    if joint is None:
+        return None
+    places = _joint_places(model, len(joint))
+    return finite_list_or_none(joint[np.ix_(places, places)])
+
+
+def _joint_places(model: AffineStateSpace, size: int) -> IntArray:
+    places = _entries(model)
+    return np.concatenate([places, np.arange(len(places), size)])
+
+
 def eigenvalue_documents(estimate: AffineEstimate) -> list[EigenvaluesDocument]:
     """The eigenvalues of each A_i; multiple ones have no covariance."""
     values = finite(estimate.model.eigenvalues(), "eigenvalues")

@@ -4,6 +4,7 @@ from collections.abc import Set
 from typing import Any
 
 from app.container import Container
+from app.conversion.effects import effect_of
 from app.errors import UnprocessableError
 from app.jobs.records import JobRecord
 from app.schemas.extensions import ExtensionRequest
@@ -25,11 +26,12 @@ from app.services.measured import (
 from app.services.models import KIND, model_of
 from app.services.plants import plant_of
 from app.store.resources import ResourceRepository
+from identification.places.linear import Coefficient
 
 HELD_OUT = "/heldOutExperimentIds"
-NO_EFFECTS = (
-    "a model from varying scheduling has no place for effects yet: their response is known at operating points that are"
-    " held still only, not along p(t); identify a rational model from such experiments and extend that"
+OF_COEFFICIENTS = (
+    "this effect changes single coefficients, and those of a state-space model depend on the state basis; identify a"
+    " rational model from these experiments and extend that"
 )
 
 
@@ -55,9 +57,9 @@ def payload(
     fitted: Set[str],
 ) -> dict[str, Any]:
     """What the task gets; raises UnprocessableError when the effect or the experiments do not fit the model."""
-    if model.varying is not None:
-        raise UnprocessableError.at("/effect", NO_EFFECTS)
     check_effect(request.effect, [*experiments, *held_out], "/effect")
+    if model.varying is not None and isinstance(effect_of(request.effect), Coefficient):
+        raise UnprocessableError.at("/effect", OF_COEFFICIENTS)
     check_time_domain(model, experiments, "/experimentIds")
     check_time_domain(model, held_out, HELD_OUT)
     check_logged(model, experiments, "/experimentIds")

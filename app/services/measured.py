@@ -80,6 +80,12 @@ def _check_channels(model: Model, experiments: Sequence[Measured], pointer: str)
     assert model.state_space is not None, "models from varying scheduling are in state space"
     one = model.state_space.input_count == model.state_space.output_count == 1
     for i, (experiment, _) in enumerate(experiments):
+        if experiment.operating_point is None and model.effects:
+            raise UnprocessableError.at(
+                f"{pointer}/{i}",
+                "the model carries effects, whose response is known at operating points that are held still, not along"
+                " p(t); give experiments at such points, or compare its parent",
+            )
         if experiment.operating_point is not None and not one:
             raise UnprocessableError.at(
                 f"{pointer}/{i}",

@@ -71,9 +71,11 @@ def frequency_response(
 
 
 def _evaluated(document: Model, plant: Plant, point: list[float], channel: tuple[int, int]) -> _Evaluated:
+    if document.effects:
+        return _extended(document, plant, point)
     if document.state_space is not None:
         return _state_space(document, plant, point, channel)
-    return _extended(document, plant, point) if document.effects else _rational(document, plant, point)
+    return _rational(document, plant, point)
 
 
 def _extended(document: Model, plant: Plant, point: list[float]) -> _Evaluated:

@@ -10,8 +10,9 @@ from identification.affine_state_space import AffineStateSpace
 from identification.arrays import BoolArray, ComplexArray, FloatArray
 from identification.bases.polynomial import Polynomial
 from identification.errors import MisuseError
-from identification.extension.model import ExtendedModel
+from identification.extension.model import ExtendedModel, PlacedEffect
 from identification.models import LpvModel, RationalStructure
+from identification.outcome import Outcome
 from identification.scheduling import ParameterDependence, ProductBasis
 from identification.varying.affine_parameters import AffineSizes
 
@@ -157,19 +158,13 @@ def _symmetric_unit(n: int, i: int, k: int) -> FloatArray:
     return unit
 
 
-@dataclass(frozen=True, eq=False)
-class FrozenModel:
-    """`model` answers at frozen operating points; θ = Q δ, Q = `chart` (size, free), in the state basis of `affine`."""
+def frozen(
+    estimate: AffineEstimate, effects: tuple[PlacedEffect, ...] = (), joint: FloatArray | None = None
+) -> ExtendedModel:
+    """The model of an estimate with one input and output, its scheduling held still, its parameters δ, θ = Q δ.
 
-    model: ExtendedModel
-    affine: AffineStateSpace
-    chart: FloatArray
-
-
-def frozen(estimate: AffineEstimate) -> FrozenModel:
-    """The model of an estimate with one input and output, its scheduling held still, and its covariance.
-
-    Raises MisuseError for several inputs or outputs, or without declared scheduling variables.
+    `joint`: the covariance of θ and the parameters of the `effects` together, None when it is not known. Raises
+    MisuseError for several inputs or outputs, or without declared scheduling variables.
     """
     model = estimate.model
     if model.n_inputs != 1 or model.n_outputs != 1 or not model.variables:
@@ -188,15 +183,37 @@ def frozen(estimate: AffineEstimate) -> FrozenModel:
         (ProductBasis((Polynomial(0),) * len(model.variables)),) * (sizes.order + 1) ** 2,
         tuple(tuple(map(float, row)) for row in chart),
     )
-    covariance = np.zeros((sizes.free, sizes.free))
-    known = estimate.covariance is not None
-    if estimate.covariance is not None:
-        inner = chart.T @ _turning(sizes, basis)
-        covariance = inner @ estimate.covariance @ inner.T
+    inner = chart.T @ _turning(sizes, basis)
+    known = estimate.covariance
+    covariance = np.zeros((sizes.free, sizes.free)) if known is None else inner @ known @ inner.T
     base = LpvModel(
         FrozenStructure.of(sizes.order, model.sample_time), dependence, chart.T @ theta, covariance, noise_variance=1.0
     )
-    return FrozenModel(ExtendedModel(base, (), covariance if known else None), balanced, chart)
+    if not effects:
+        return ExtendedModel(base, (), None if known is None else covariance)
+    return ExtendedModel(base, effects, None if joint is None else _on_both_sides(inner, joint))
+
+
+def affine_estimate(model: ExtendedModel) -> tuple[AffineEstimate, FloatArray | None]:
+    """The affine model that `frozen` made this one of, as it is now, and the joint covariance of θ and the effects."""
+    dependence, structure = model.base.dependence, model.base.structure
+    assert isinstance(dependence, ChartedDependence), "made by `frozen`"
+    chart = np.array(dependence.chart)
+    sizes = AffineSizes(structure.n_a, len(dependence.variables), 1, 1)
+    affine = sizes.model(chart @ model.base.theta, structure.sample_time or 0.0, dependence.variables)
+    joint = None if model.covariance is None else _on_both_sides(chart, model.covariance)
+    covariance = None if joint is None else joint[: sizes.size, : sizes.size]
+    return AffineEstimate(affine, Outcome("converged"), (), covariance), joint
+
+
+def _on_both_sides(matrix: FloatArray, joint: FloatArray) -> FloatArray:
+    """diag(M, I) P diag(M, I)ᵀ."""
+    rows, columns = matrix.shape
+    whole = np.eye(rows + len(joint) - columns, len(joint))
+    whole[:rows, :columns] = matrix
+    whole[rows:, columns:] = np.eye(len(joint) - columns)
+    whole[:rows, columns:] = 0.0
+    return np.asarray(whole @ joint @ whole.T)
 
 
 def _turning(sizes: AffineSizes, basis: FloatArray) -> FloatArray:

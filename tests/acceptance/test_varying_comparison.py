@@ -111,22 +111,59 @@ def test_local_and_varying_models_of_one_plant_agree_within_their_covariances(
     assert max(sizes) < 0.1
 
 
-def test_what_a_still_experiment_lacks_is_diagnosed(api: Api, plant: Json, model: Json) -> None:
-    """A delay of the measurement that the model does not know."""
+DELAY = 0.3
+
+
+def delayed_response(point: float, omega: np.ndarray) -> np.ndarray:
+    return PLANT.frequency_response(np.array([[point]]), omega)[0, :, 0, 0] * np.exp(-1j * DELAY * omega)
+
+
+@pytest.fixture(scope="module")
+def late(api: Api, plant: Json) -> list[str]:
+    """Frequency responses with a delay that the model does not know."""
     g = np.random.default_rng(8)
     experiments = []
-    for point in POINTS:
+    for point in (*POINTS, -0.4, 0.4, 0.6):
         omega = np.linspace(0.05, 3.0, 60)
-        response = PLANT.frequency_response(np.array([[point]]), omega)[0, :, 0, 0] * np.exp(-0.3j * omega)
-        noise = 0.01 * g.standard_normal((2, 60)).T @ [1, 1j]
-        measured = response + noise
+        measured = delayed_response(point, omega) + 0.01 * g.standard_normal((2, 60)).T @ [1, 1j]
         request = {"plantId": plant["id"], "kind": "frequencyResponse", "operatingPoint": [point]}
         request |= {"sampleTimeSeconds": 1.0, "frequenciesRadPerSecond": omega.tolist(), "variance": [2e-4] * 60}
         request["response"] = {"re": measured.real.tolist(), "im": measured.imag.tolist()}
         experiments.append(api.made("/experiments", request)["id"])
-    found = api.made("/diagnoses", {"modelId": model["id"], "experimentIds": experiments})
+    return experiments
+
+
+def test_what_still_experiments_lack_is_diagnosed_and_added(
+    api: Api, model: Json, late: list[str], records: list[str]
+) -> None:
+    found = api.made("/diagnoses", {"modelId": model["id"], "experimentIds": late[:5]})
     assert found["verdict"] in ("explained", "partlyExplained")
     assert "delay" in found["announced"]
+    request = {
+        "effect": "delay",
+        "experimentIds": late[:5],
+        "heldOutExperimentIds": late[5:],
+        "diagnosisId": found["id"],
+    }
+    grown = api.made(f"/models/{model['id']}/extensions", request)
+    assert (grown["origin"], grown["parentId"], grown["effects"][0]["kind"]) == ("extended", model["id"], "delay")
+    report = grown["extension"]
+    assert report["after"]["heldOut"] < 0.05 < report["before"]["heldOut"]
+    assert report["after"]["lackOfFit"]["pValue"] > 1e-3
+    deviation = grown["effects"][0]["standardDeviations"][0][0]
+    assert abs(grown["effects"][0]["coefficients"][0][0] - DELAY) < 4 * deviation
+    assert grown["jointParameterNames"][4] == "A[1](1,1)"
+    assert len(grown["jointCovariance"]) == len(grown["jointParameterNames"]) == len(grown["theta"]) + 1
+    band = {"minimumRadPerSecond": 0.1, "maximumRadPerSecond": 3.0, "count": 30}
+    response = api.get(f"/models/{grown['id']}/frequency-response", operatingPoint=[0.5], **band)
+    error = complex_array(response["response"]) - delayed_response(0.5, np.array(response["frequenciesRadPerSecond"]))
+    assert 0.1 < np.mean(error.real**2 / np.array(response["realVariance"])) < 3
+    again = compared(api, grown, late[5:])
+    assert again["parts"][0]["lackOfFit"]["pValue"] > 1e-3
+    refused = api.refused("/comparisons", {"modelId": grown["id"], "experimentIds": [records[1]]})
+    assert pointers(refused) == ["/experimentIds/0"]
+    given = {"kind": "given", "inputs": [[1.0]], "scheduling": [[0.0]]}
+    assert pointers(api.refused(f"/models/{grown['id']}/simulations", {"excitation": given})) == ["/modelId"]
 
 
 def test_what_cannot_be_compared_or_diagnosed_says_why(
@@ -138,7 +175,7 @@ def test_what_cannot_be_compared_or_diagnosed_says_why(
     assert "held still" in problem["detail"]
     along = compared(api, model, [records[0]])
     assert pointers(api.refused("/diagnoses", {"comparisonId": along["id"]})) == ["/comparisonId"]
-    extension = {"effect": "delay", "experimentIds": still}
+    extension = {"effect": "quadratic_dependence", "experimentIds": still}
     assert pointers(api.refused(f"/models/{model['id']}/extensions", extension)) == ["/effect"]
     without = {"plantId": plant["id"], "experimentId": records[0], "estimator": {"kind": "periodic_moesp"}}
     moesp = api.made("/models/varying", without)

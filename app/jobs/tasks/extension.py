@@ -8,7 +8,7 @@ import numpy as np
 from app import __version__
 from app.conversion.effects import effect_of, extended_model
 from app.conversion.experiments import kept_batches
-from app.conversion.extensions import extended_documents
+from app.conversion.extensions import extended_affine_documents, extended_documents
 from app.conversion.extremes import require_finite, within_doubles
 from app.conversion.fields import field_named
 from app.conversion.models import outcome_document, test_documents
@@ -55,8 +55,14 @@ def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
             before=_errors(base, batches, held_out),
             after=_errors(grown, batches, held_out),
         )
-        document = extended_documents(grown.model)
+        document = _documents(grown, parent)
     return TaskResult({**_traced(payload, parent, request), **document, **_outcome(grown, report)})
+
+
+def _documents(grown: Fit, parent: Model) -> dict[str, Any]:
+    if parent.varying is None:
+        return extended_documents(grown.model)
+    return extended_affine_documents(grown.model, parent)
 
 
 def _effect(request: ExtensionRequest, quantity: str | None, batches: Sequence[Batch]) -> Effect:

@@ -11,7 +11,7 @@ from identification.errors import MisuseError
 from identification.outcome import Outcome
 from identification.scheduling import SchedulingVariable
 from identification.varying.affine_parameters import AffineSizes
-from identification.varying.frozen import frozen, smallest_basis
+from identification.varying.frozen import affine_estimate, frozen, smallest_basis
 from tests.identification.varying.models import random_model
 
 OMEGA = np.linspace(0.1, 3.0, 7)
@@ -36,7 +36,13 @@ def theta(model: AffineStateSpace) -> np.ndarray:
 @pytest.mark.parametrize(("order", "n_p"), [(1, 1), (2, 1), (3, 2), (4, 1)])
 def test_responses_and_their_covariances_are_those_of_the_model(order: int, n_p: int) -> None:
     found = estimate(order + 10 * n_p, order, n_p)
-    model = frozen(found).model
+    model = frozen(found)
+    again, _ = affine_estimate(model)
+    assert np.allclose(
+        again.response_covariance(np.zeros((1, n_p)), OMEGA),
+        found.response_covariance(np.zeros((1, n_p)), OMEGA),
+        rtol=1e-6,
+    )
     points = np.random.default_rng(1).uniform(-1, 1, (3, n_p))
     assert np.allclose(
         model.base.frequency_response(points, OMEGA),
@@ -51,7 +57,7 @@ def test_responses_and_their_covariances_are_those_of_the_model(order: int, n_p:
 
 
 def test_the_gradient_is_the_derivative() -> None:
-    base = frozen(estimate(5, 3, 1)).model.base
+    base = frozen(estimate(5, 3, 1)).base
     zeta = base.coefficients([[0.3], [-0.7]])
     direction = np.random.default_rng(2).standard_normal(zeta.shape[1])
     step = 1e-6 * direction
@@ -72,7 +78,7 @@ def test_in_the_smallest_basis_the_parameters_lie_in_their_own_chart(seed: int) 
 
 
 def test_a_model_without_covariance_has_none_and_one_with_several_channels_is_refused() -> None:
-    assert frozen(estimate(1, 2, 1, known=False)).model.covariance is None
+    assert frozen(estimate(1, 2, 1, known=False)).covariance is None
     wide = random_model(np.random.default_rng(3), 2, 1, 2, 1)
     with pytest.raises(MisuseError, match="2 inputs"):
         frozen(AffineEstimate(wide, Outcome("converged"), ()))
