@@ -8,7 +8,7 @@ import { bandOf, responseOf } from "../models/responses.js";
 import { hertz, significant } from "../numbers.js";
 import { linkAxes } from "../plots.js";
 import { problemBox } from "../problems.js";
-import { recordPlot } from "../record.js";
+import { recordPlot } from "./record.js";
 import { DATA } from "./residual_maps.js";
 
 export class CellView {

@@ -1,10 +1,10 @@
 // The record of an experiment: input and output over its last period, on one time axis.
 
-import { get } from "./api.js";
-import { h } from "./dom.js";
-import { labelled, significant } from "./numbers.js";
-import { dash, seriesColour } from "./palette.js";
-import { axis, plot, thinned } from "./plots.js";
+import { get } from "../api.js";
+import { h } from "../dom.js";
+import { labelled, significant } from "../numbers.js";
+import { dash, seriesColour } from "../palette.js";
+import { axis, plot, thinned } from "../plots.js";
 
 // Draw the record of an experiment of a plant; frequency responses have none, and say so.
 export async function recordPlot(place, experiment, plant) {
