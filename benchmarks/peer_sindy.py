@@ -18,9 +18,9 @@ from typing import Any
 import numpy as np
 
 from benchmarks.command import command_line, print_table, write_json
-from benchmarks.diagnosis_study import held_out
 from benchmarks.processes import over
 from benchmarks.virtual_bench.bench import PERIOD, SAMPLE_TIME, STEPS, Bench, Experiments, experiments, noisy
+from benchmarks.virtual_bench.hits import held_out
 from benchmarks.virtual_bench.study import MODEL, effects, steady, strengths
 from identification.arrays import FloatArray
 from identification.comparison.gather import gather
