@@ -48,7 +48,7 @@ def here(visit: Visit, plant: Json) -> Visit:
 
 
 def row(visit: Visit, name: str) -> str:
-    return visit.page.get_by_role("row", name=name).inner_text(timeout=15_000)
+    return visit.page.get_by_role("row", name=name).inner_text()
 
 
 def test_all_formats_are_dropped_and_read(here: Visit) -> None:

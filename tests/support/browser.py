@@ -19,7 +19,7 @@ class Visit:
         self.page = page
         self.faults: list[str] = []
         self._url = url
-        page.set_default_timeout(20_000)
+        page.set_default_timeout(60_000)
         page.on("console", self._console)
         page.on("pageerror", lambda error: self.faults.append(f"fault: {error}"))
         page.on("request", self._request)

@@ -2,29 +2,40 @@
 
 import { hertz, labelled, significant } from "./numbers.js";
 import { axis, linkAxes, plot } from "./plots.js";
-import { symbol } from "./palette.js";
+import { faded, seriesColour, symbol } from "./palette.js";
 
 // Gain and phase of a measured response, of every channel where there are several.
 export async function drawResponse(place, plant, data) {
   const frequencies = data.frequenciesRadPerSecond.map(hertz);
   const curves = channels(data, plant).map((one) => ({ ...one, gain: gains(one), phase: unwrapped(one) }));
   const log = frequencies.some((one) => one > 0) && Math.max(...frequencies) / Math.min(...frequencies.filter((one) => one > 0)) > 20;
-  const trace = (values, deviations) => (one, i) => ({
-    x: frequencies, y: values(one), name: one.name, mode: "markers", marker: { size: 5, symbol: symbol(i) },
-    error_y: deviations(one) ? { type: "data", array: deviations(one), width: 0, thickness: 1 } : undefined,
-  });
+  const traces = (values, deviations, least) => curves.flatMap((one, i) => [
+    deviations(one) ? band(frequencies, values(one), deviations(one), i, least) : null,
+    { x: frequencies, y: values(one), name: one.name, mode: "markers", marker: { size: 5, symbol: symbol(i), color: seriesColour(i) } },
+  ].filter(Boolean));
   const table = () => ({ columns: ["frequency (Hz)", ...curves.flatMap((one) => [`gain ${one.name}`, `phase (°) ${one.name}`])],
     rows: frequencies.map((value, i) => [significant(value, 4), ...curves.flatMap((one) => [significant(one.gain[i], 4), significant(one.phase[i], 4)])]) });
   const unit = plant.input ? [plant.output.unit, plant.input.unit].filter(Boolean).join("/") : "";
   const gain = await plot(place, {
     caption: `Gain${data.variance ? " with one standard deviation" : ""}.`, height: 300, table,
-    draw: () => ({ data: curves.map(trace((one) => one.gain, (one) => one.deviation)), layout: { xaxis: axis("frequency (Hz)", { log }), yaxis: axis(labelled("gain", unit), { log: true }), showlegend: curves.length > 1 } }),
+    draw: () => ({ data: traces((one) => one.gain, (one) => one.deviation, (gain) => gain / 100), layout: { xaxis: axis("frequency (Hz)", { log }), yaxis: axis(labelled("gain", unit), { log: true }), showlegend: curves.length > 1 } }),
   });
   const phase = await plot(place, {
     caption: "Phase.", height: 260, table,
-    draw: () => ({ data: curves.map(trace((one) => one.phase, (one) => one.deviation?.map((value, i) => (180 / Math.PI) * Math.min(value / one.gain[i], 1)))), layout: { xaxis: axis("frequency (Hz)", { log }), yaxis: axis("phase (°)"), showlegend: false } }),
+    draw: () => ({ data: traces((one) => one.phase, (one) => one.deviation?.map((value, i) => (180 / Math.PI) * Math.min(value / one.gain[i], 1)), () => -Infinity), layout: { xaxis: axis("frequency (Hz)", { log }), yaxis: axis("phase (°)"), showlegend: false } }),
   });
   linkAxes([gain, phase]);
+}
+
+// One standard deviation to both sides, as an area that stays above the `least` of each value.
+function band(frequencies, values, deviations, i, least) {
+  const order = frequencies.map((_, k) => k).sort((a, b) => frequencies[a] - frequencies[b]);
+  const back = [...order].reverse();
+  return {
+    x: [...order, ...back].map((k) => frequencies[k]),
+    y: [...order.map((k) => values[k] + deviations[k]), ...back.map((k) => Math.max(values[k] - deviations[k], least(values[k])))],
+    fill: "toself", fillcolor: faded(seriesColour(i), 0.3), line: { width: 0 }, mode: "lines", hoverinfo: "skip", showlegend: false,
+  };
 }
 
 function channels({ kind, response: { re, im }, variance }, plant) {

@@ -10,9 +10,11 @@ import { targetText } from "../js/design/target_fields.js";
 import { drawTrade } from "../js/design/trade.js";
 import { append, byId, facts, h, message, replace } from "../js/dom.js";
 import { duration, exact, moment, percent, quantity } from "../js/numbers.js";
+import { loadPlotly } from "../js/plots.js";
 import { page } from "../js/ready.js";
 import { plant } from "../js/shell.js";
 
+loadPlotly(); // while the data come
 page(async () => {
   const [described, design] = await Promise.all([plant, get(`/designs/${context.designId}`)]);
   const model = await get(`/models/${design.modelId}`);

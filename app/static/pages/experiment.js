@@ -5,11 +5,13 @@ import { context } from "../js/context.js";
 import { byId, facts, h, message, replace } from "../js/dom.js";
 import { submitButton } from "../js/forms.js";
 import { counted, duration, exact, hertz, moment, percent, pointLabel, quantity, significant } from "../js/numbers.js";
+import { loadPlotly } from "../js/plots.js";
 import { page } from "../js/ready.js";
 import { drawRecord, drawSpectrum } from "../js/record_plots.js";
 import { drawResponse } from "../js/response_plots.js";
 import { plant } from "../js/shell.js";
 
+loadPlotly(); // while the data come
 page(async () => {
   const path = `/experiments/${context.experimentId}`;
   const [described, experiment] = await Promise.all([plant, get(path)]);
