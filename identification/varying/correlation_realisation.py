@@ -95,8 +95,9 @@ class CorrelationRealisation:
     def estimate(
         self, record: VaryingRecord, order: int | None = None, *, progress: Progress = silent
     ) -> CorrelationEstimate:
-        """The model of a record that starts from rest; without `order` n_x is taken from the singular values.
+        """The model of a record; without `order` n_x is taken from the singular values.
 
+        The record starts from rest, or in any state when refined: then it costs the first model little.
         Input and scheduling may be anything for least squares; correlation needs both white (A2, A3), which is tested.
         Raises NotIdentifiableError when scheduling or input are not rich enough for the words, the record is too short,
         or the order is above the rank of the Hankel matrix; RangeError for an order that is not positive.

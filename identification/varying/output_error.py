@@ -17,14 +17,16 @@ from identification.varying.progress import Progress, Steps, silent, within
 from identification.varying.records import VaryingRecord
 
 ROUNDS = 4
+LARGE = 1e100
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class OutputErrorEstimate(AffineEstimate):
-    """With the covariance Σ_w (n_y, n_y) of the noise and the errors y − ŷ (N, n_y)."""
+    """With the covariance Σ_w (n_y, n_y) of the noise, the errors y − ŷ (N, n_y) and the first state (n_x,)."""
 
     noise_covariance: FloatArray
     errors: FloatArray
+    initial_state: FloatArray
 
 
 @dataclass(frozen=True)
@@ -45,7 +47,7 @@ class OutputError:
     def estimate(
         self, record: VaryingRecord, order: int | None, start: AffineStateSpace, *, progress: Progress = silent
     ) -> OutputErrorEstimate:
-        """The estimate of a record that starts from rest; the order is that of the start. Raises as `output_error`."""
+        """The estimate of a record; the order is that of the start. Raises as `output_error`."""
         if order not in (None, start.order):
             raise ShapeError(f"the start has order {start.order}, {order} is asked for", "start")
         return output_error(start, record, self.max_iterations, progress)
@@ -61,36 +63,37 @@ def output_error(
 ) -> OutputErrorEstimate:
     """The output-error estimate from a model near it: maximum likelihood when the noise is white and Gaussian.
 
-        θ̂ = arg min Σ_t ‖Σ_w^{-½} (y(t) − ŷ(t, θ))‖²,   P_θ = Q (QᵀJᵀJQ)⁻¹ Qᵀ
+        θ̂, x̂(0) = arg min Σ_t ‖Σ_w^{-½} (y(t) − ŷ(t, θ, x(0)))‖²,   P_θ = Q (QᵀJᵀJQ)⁻¹ Qᵀ
 
     All matrices are free; θ moves in the orthogonal complement Q of what a change of state coordinates does to first
     order, A_kT − TA_k, −TB_k, C_kT, at the start of each round, so that JQ has full rank. Σ_w is the covariance of the
-    errors of the round before, at least 1e-20 of the output's mean square. The state starts from zero. Raises
+    errors of the round before, at least 1e-20 of the output's mean square. The record may begin in any state. Raises
     ShapeError for sizes that do not fit and NotIdentifiableError with fewer values of the output than parameters.
     """
     _require_fit(start, record)
-    model, iterations = start, 0
+    model, iterations, initial = start, 0, np.zeros(start.order)
     floor = 1e-20 * np.maximum(np.mean(record.output**2, axis=0), np.finfo(float).tiny)
-    errors = record.output - _simulated(_matrices(model), record)[1]
+    errors = record.output - _simulated(_matrices(model), record, initial)[1]
     for i in range(ROUNDS):
         steps = Steps(within(progress, i / ROUNDS, (i + 1) / ROUNDS), f"likelihood, round {i + 1}")
-        problem = _Problem(model, record, errors.T @ errors / len(errors) + np.diag(floor), floor)
-        solution = levenberg_marquardt(
-            steps.of(problem.evaluate), np.zeros(problem.sizes.free), None, max_iterations, 1e-4
-        )
+        problem = _Problem(model, initial, record, errors.T @ errors / len(errors) + np.diag(floor), floor)
+        solution = levenberg_marquardt(steps.of(problem.evaluate), np.zeros(problem.size), None, max_iterations, 1e-4)
         iterations += solution.outcome.iterations
         a, b, c, d = problem.matrices(solution.x)
-        model = replace(model, a=a, b=b, c=c, d=d)
-        errors = record.output - _simulated((a, b, c, d), record)[1]
+        model, initial = replace(model, a=a, b=b, c=c, d=d), problem.state(solution.x)
+        errors = record.output - _simulated((a, b, c, d), record, initial)[1]
         if solution.outcome.status != "converged" or solution.cost > (1 - 1e-6) * errors.size:
             break
         if np.all(np.mean(errors**2, axis=0) < floor):
             break
     outcome = Outcome(solution.outcome.status, solution.outcome.advice, iterations)
     known = outcome.status != "not_identifiable"
-    covariance = problem.chart @ solution.covariance @ problem.chart.T if known else None
+    of_model = slice(0, problem.sizes.free)
+    covariance = problem.chart @ solution.covariance[of_model, of_model] @ problem.chart.T if known else None
     noise = errors.T @ errors / len(errors)
-    return OutputErrorEstimate(model, outcome, (), covariance, noise_covariance=noise, errors=errors)
+    return OutputErrorEstimate(
+        model, outcome, (), covariance, noise_covariance=noise, errors=errors, initial_state=initial
+    )
 
 
 def _require_fit(start: AffineStateSpace, record: VaryingRecord) -> None:
@@ -114,20 +117,34 @@ def _matrices(model: AffineStateSpace) -> Matrices:
     return model.a, model.b, model.c, model.d
 
 
-def _simulated(matrices: Matrices, record: VaryingRecord) -> tuple[FloatArray, FloatArray]:
-    """States (N, n_x) and output (N, n_y) from rest; what diverges comes out as inf or nan."""
+def _simulated(matrices: Matrices, record: VaryingRecord, initial: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """States (N, n_x) and output (N, n_y) from x(0); what diverges comes out as inf or nan."""
     a, b, c, d = frozen_matrices(matrices, record.scheduling)
     u = record.input[..., None]
     with np.errstate(over="ignore", invalid="ignore"):
-        x = propagate(a, (b @ u)[..., 0], np.zeros(a.shape[-1]))[:-1]
+        x = propagate(a, (b @ u)[..., 0], initial)[:-1]
         return x, np.asarray((c @ x[..., None] + d @ u)[..., 0])
 
 
 class _Problem:
-    """Whitened errors and their derivative with respect to β, θ = θ_start + Q β."""
+    """Whitened errors and their derivative with respect to (β, ξ), θ = θ_start + Q β, x(0) = `initial` + ξ.
 
-    def __init__(self, start: AffineStateSpace, record: VaryingRecord, noise: FloatArray, floor: FloatArray) -> None:
-        self.sizes = AffineSizes.of(start)
+    A thousand times the size of the states is the deviation of x(0) in advance: what nothing shows of it stays at zero.
+    """
+
+    def __init__(
+        self,
+        start: AffineStateSpace,
+        initial: FloatArray,
+        record: VaryingRecord,
+        noise: FloatArray,
+        floor: FloatArray,
+    ) -> None:
+        self.sizes, self.initial = AffineSizes.of(start), initial
+        self.size = self.sizes.free + self.sizes.order
+        states = _simulated(_matrices(start), record, np.zeros(start.order))[0]
+        size = float(np.sqrt(np.mean(np.minimum(states**2, LARGE**2), where=np.isfinite(states))))
+        self.spread = 1e3 * (size or 1.0)
         self.start = self.sizes.join(_matrices(start))
         self.chart = self.sizes.chart(self.start)
         self.record, self.root = record, np.linalg.cholesky(noise).astype(np.float64)
@@ -136,26 +153,46 @@ class _Problem:
 
     def matrices(self, beta: FloatArray) -> Matrices:
         """A, B, C, D at β."""
-        return self.sizes.split(self.start + self.chart @ beta)
+        return self.sizes.split(self.start + self.chart @ beta[: self.sizes.free])
+
+    def state(self, beta: FloatArray) -> FloatArray:
+        """x(0) at (β, ξ)."""
+        return self.initial + beta[self.sizes.free :]
 
     def evaluate(self, beta: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Zᵀr (n_θ + 2,) and Zᵀ ∂r/∂β, Z from a triangular factor of both; infinite where the model blows up.
+        """Zᵀr (n_θ + n_x + 2,) and Zᵀ ∂r/∂(β, ξ), from a triangular factor of both; infinite where it blows up.
 
         The long residual itself is not needed: its norm and the projections on the derivatives are kept by Zᵀ.
         """
         matrices, record = self.matrices(beta), self.record
-        x, output = _simulated(matrices, record)
-        columns, free = self.sizes.size + 1, self.sizes.free
-        residual, jacobian = np.full(columns + 1, self.rounding), np.zeros((columns + 1, free))
+        x, output = _simulated(matrices, record, self.state(beta))
+        of_model, n, rows = self.sizes.size, self.sizes.order, output.size
+        columns = of_model + n + 1
+        residual, jacobian = np.full(columns + 1, self.rounding), np.zeros((columns + 1, self.size))
         if not np.all(np.isfinite(output)) or abs(output).max() > 1e6 * abs(record.output).max():
             return np.full(columns + 1, np.inf), jacobian
-        stacked = np.empty((output.size, columns))
-        _fill_gradient(stacked[:, :-1], matrices, record, x, self.root)
-        stacked[:, -1] = solve_triangular(self.root, (record.output - output).T, lower=True).ravel()
+        stacked = np.zeros((rows + n, columns))
+        _fill_gradient(stacked[:rows, :of_model], matrices, record, x, self.root)
+        stacked[:rows, of_model:-1] = _by_initial_state(matrices, record, self.root)
+        stacked[:rows, -1] = solve_triangular(self.root, (record.output - output).T, lower=True).ravel()
+        stacked[rows:, of_model:-1] = np.eye(n) / self.spread
+        stacked[rows:, -1] = -self.state(beta) / self.spread
         factor: FloatArray = np.asarray(np.linalg.qr(stacked, mode="r"))
         residual[: len(factor)], residual[len(factor) : -1] = factor[:, -1], 0.0
-        jacobian[: len(factor)] = -factor[:, :-1] @ self.chart
+        jacobian[: len(factor), : self.sizes.free] = -factor[:, :of_model] @ self.chart
+        jacobian[: len(factor), self.sizes.free :] = -factor[:, of_model:-1]
         return residual, jacobian
+
+
+def _by_initial_state(matrices: Matrices, record: VaryingRecord, root: FloatArray) -> FloatArray:
+    """Σ_w^{-½} ∂ŷ/∂x(0), (n_y N, n_x), zero from where it has died out or blown up."""
+    a, _, c, _ = frozen_matrices(matrices, record.scheduling)
+    n = a.shape[1]
+    with np.errstate(over="ignore", invalid="ignore"):
+        states = propagate(a, np.zeros((n, len(a), n)), np.eye(n))[:, :-1]
+        output = solve_triangular(root, np.eye(len(root)), lower=True) @ c @ states[..., None]
+    found = np.where(abs(output[..., 0]) < LARGE, output[..., 0], 0.0)
+    return np.asarray(found.transpose(2, 1, 0).reshape(-1, n))
 
 
 def _fill_gradient(

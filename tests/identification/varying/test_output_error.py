@@ -22,20 +22,22 @@ def test_the_gradient_is_that_of_the_cost():
     model, _ = random_affine(rng, 3, 2, 2, 2)
     record = white_record(model, rng, 80, 10.0)
     noise = np.array([[1.0, 0.3], [0.3, 2.0]])
-    problem = _Problem(model, record, noise, np.full(2, 1e-20))
+    initial = rng.standard_normal(3)
+    problem = _Problem(model, initial, record, noise, np.full(2, 1e-20))
 
     def cost(beta):
         errors = record.output - AffineStateSpace(*problem.matrices(beta), 1.0).simulate(
-            record.input, record.scheduling
+            record.input, record.scheduling, problem.state(beta)
         )
-        return float(np.sum(errors @ np.linalg.inv(noise) * errors))
+        prior = np.sum((problem.state(beta) / problem.spread) ** 2)
+        return float(np.sum(errors @ np.linalg.inv(noise) * errors) + prior)
 
-    beta, step = (0.02 * rng.standard_normal(problem.sizes.free) for _ in range(2))
+    beta, step = (0.02 * rng.standard_normal(problem.size) for _ in range(2))
     residual, jacobian = problem.evaluate(beta)
     assert residual @ residual == pytest.approx(cost(beta), rel=1e-10)
     slope = (cost(beta + 1e-5 * step) - cost(beta - 1e-5 * step)) / 2e-5
     assert 2 * residual @ jacobian @ step == pytest.approx(slope, rel=1e-5)
-    assert np.linalg.matrix_rank(jacobian) == problem.sizes.free
+    assert np.linalg.matrix_rank(jacobian) == problem.size
 
 
 def test_noise_free_data_give_the_model_back():
@@ -45,6 +47,18 @@ def test_noise_free_data_give_the_model_back():
     found = output_error(perturbed(model, rng, 0.03), record)
     assert found.outcome.ok
     assert np.linalg.norm(found.errors) < 1e-9 * np.linalg.norm(record.output)
+
+
+def test_a_record_may_begin_in_any_state():
+    rng = np.random.default_rng(5)
+    model, _ = random_affine(rng, 2, 2, 2, 2)
+    whole = white_record(model, rng, 700, 30.0)
+    record = whole.part(200, 600)
+    found = output_error(perturbed(model, rng, 0.03), record)
+    noise = whole.output - model.simulate(whole.input, whole.scheduling)
+    assert found.outcome.ok
+    assert np.mean(found.errors[:5] ** 2) < 3 * np.mean(noise**2)
+    assert np.trace(found.noise_covariance) == pytest.approx(np.sum(np.mean(noise**2, axis=0)), rel=0.15)
 
 
 def test_the_stated_covariance_is_that_of_the_responses():
