@@ -62,7 +62,7 @@ class Diagnosis:
 
     @property
     def best(self) -> Evidence | None:
-        """The announced effect with most weight."""
+        """The announced effect of most weight; the simplest where the size of the noise is not known."""
         return self.announced[0] if self.announced else None
 
     @property

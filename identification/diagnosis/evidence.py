@@ -168,14 +168,14 @@ def _weighted(base: Fit, found: Sequence[Evidence]) -> list[Evidence]:
 def indistinguishable(ordered: Sequence[Evidence], share: float = 0.95) -> tuple[Evidence, ...]:
     """The smallest set of effects with this share of the weight, and all whose BIC is within 6 of the best.
 
-    Where the size of the noise is not known: those whose BIC is within 2 of the best, a difference not worth more than
-    a bare mention [KassRaftery1995], and whose signature is mostly that of the best, as others may be missing as well
-    and not instead; the simplest of them first.
+    Where the size of the noise is not known: those within 6 whose signature is mostly that of the best, as others may
+    be missing as well and not instead; first the simplest of those within 2, a difference not worth more than a bare
+    mention [KassRaftery1995].
     """
     if ordered and not ordered[0].fit.rows.scaled:
         best = ordered[0]
-        alike = [one for one in ordered if one.bic <= best.bic + ALIKE and overlap(one, best) > 0.5]
-        first = simplest(alike)
+        alike = [one for one in ordered if one.bic <= best.bic + LIKELY and overlap(one, best) > 0.5]
+        first = simplest([one for one in alike if one.bic <= best.bic + ALIKE])
         return (first, *(one for one in alike if one is not first))
     kept: list[Evidence] = []
     total = sum(one.weight for one in ordered)
