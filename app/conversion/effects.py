@@ -25,6 +25,13 @@ def effect_of(kind: str) -> Effect | None:
     return next((one for one in library() if one.kind == kind), None)
 
 
+def chosen_effects(kinds: Sequence[str] | None, domain: str | None) -> tuple[Effect, ...]:
+    """The effects of these kinds, or those of a domain and the general ones, or the whole library."""
+    if kinds is None:
+        return library(domain)
+    return tuple(effect for kind in kinds if (effect := effect_of(kind)) is not None)
+
+
 def extended_model(model: Model, plant: Plant) -> ExtendedModel:
     """The model of a document with the effects that it carries; raises MisuseError where there is no such form."""
     if model.varying is not None:

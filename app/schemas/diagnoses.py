@@ -14,6 +14,7 @@ from app.schemas.plants import LongText, Text
 
 Kind = Annotated[str, Field(min_length=1, max_length=64)]
 Verdict = Literal["nothingMissing", "explained", "partlyExplained", "notInTheLibrary"]
+Domain = Literal["general", "mechanical", "impedance"]
 AmplitudeDegree = Annotated[Integer, Field(ge=0, le=3)]
 Seed = Annotated[Integer, Field(ge=0)]
 
@@ -32,7 +33,7 @@ class DiagnosisRequest(CamelModel):
     effects: Annotated[list[Kind], Field(min_length=1, max_length=100)] | None = Field(
         default=None, description="kinds of effects to judge, as in the catalogue; null for the whole library"
     )
-    domain: Literal["general", "mechanical", "impedance"] | None = Field(
+    domain: Domain | None = Field(
         default=None, description="judge the effects of this kind of plant and the general ones; null for all"
     )
     amplitude_degree: AmplitudeDegree = Field(default=0, description="of the amplitudes in each scheduling variable")

@@ -1,5 +1,6 @@
 """Diagnoses: asked for, and made in a job."""
 
+from collections.abc import Sequence
 from typing import Any
 
 from app.container import Container
@@ -45,11 +46,7 @@ def payload(
     """What the task gets; raises UnprocessableError when experiments, model and effects do not fit each other."""
     check_time_domain(model, experiments, pointer)
     check_logged(model, experiments, pointer)
-    asked = request.effects or []
-    if len(set(asked)) < len(asked):
-        raise UnprocessableError.at("/effects", "the same effect is named twice")
-    for i, kind in enumerate(asked):
-        check_effect(kind, experiments, f"/effects/{i}")
+    check_effects(request.effects or [], experiments)
     return {
         "plant": plant.as_json(),
         "model": model.as_json(),
@@ -57,6 +54,14 @@ def payload(
         "experiments": payload_of(experiments),
         "pointer": pointer,
     }
+
+
+def check_effects(kinds: Sequence[str], experiments: list[Measured]) -> None:
+    """Raises UnprocessableError unless each effect is known, named once, and such that the experiments can show it."""
+    if len(set(kinds)) < len(kinds):
+        raise UnprocessableError.at("/effects", "the same effect is named twice")
+    for i, kind in enumerate(kinds):
+        check_effect(kind, experiments, f"/effects/{i}")
 
 
 def _source(resources: ResourceRepository, request: DiagnosisRequest) -> tuple[str, list[str], str]:

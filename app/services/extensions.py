@@ -60,17 +60,8 @@ def payload(
     check_effect(request.effect, [*experiments, *held_out], "/effect")
     if model.varying is not None and isinstance(effect_of(request.effect), Coefficient):
         raise UnprocessableError.at("/effect", OF_COEFFICIENTS)
-    check_time_domain(model, experiments, "/experimentIds")
-    check_time_domain(model, held_out, HELD_OUT)
-    check_logged(model, experiments, "/experimentIds")
-    check_logged(model, held_out, HELD_OUT)
+    check_measured(model, experiments, held_out, fitted)
     quantity = chosen_quantity(request.effect, request.quantity, [*experiments, *held_out])
-    known = fitted | set(request.experiment_ids)
-    for i, (experiment, _) in enumerate(held_out):
-        if experiment.id in known:
-            raise UnprocessableError.at(
-                f"{HELD_OUT}/{i}", "this experiment is or was fitted, so its error would say nothing; leave it out"
-            )
     return {
         "plant": plant.as_json(),
         "model": model.as_json(),
@@ -79,6 +70,20 @@ def payload(
         "heldOut": payload_of(held_out),
         "quantity": quantity,
     }
+
+
+def check_measured(model: Model, experiments: list[Measured], held_out: list[Measured], fitted: Set[str]) -> None:
+    """Raises UnprocessableError when experiments do not fit the model, or held-out ones are or were fitted."""
+    check_time_domain(model, experiments, "/experimentIds")
+    check_time_domain(model, held_out, HELD_OUT)
+    check_logged(model, experiments, "/experimentIds")
+    check_logged(model, held_out, HELD_OUT)
+    known = fitted | {experiment.id for experiment, _ in experiments}
+    for i, (experiment, _) in enumerate(held_out):
+        if experiment.id in known:
+            raise UnprocessableError.at(
+                f"{HELD_OUT}/{i}", "this experiment is or was fitted, so its error would say nothing; leave it out"
+            )
 
 
 def _check_diagnosis(resources: ResourceRepository, model: Model, request: ExtensionRequest) -> None:

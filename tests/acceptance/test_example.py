@@ -38,6 +38,7 @@ def test_plant_and_experiments_are_there(api: Api, example: Json) -> None:
 def test_the_loop_finds_what_it_hides(api: Api, example: Json) -> None:
     fitted, held_out = example["experimentIds"], example["heldOutExperimentIds"]
     model = api.made("/models", {"plantId": example["plantId"], "experimentIds": fitted, **IDENTIFICATION})
+    assert model["noiseVariance"] == pytest.approx(example["noiseStandardDeviation"] ** 2, rel=0.1)
     found = api.made("/diagnoses", {"modelId": model["id"], "experimentIds": fitted})
     assert found["announced"][0] == example["hidden"]["kind"] == "quadratic_damping"
     body = {"effect": found["announced"][0], "experimentIds": fitted, "heldOutExperimentIds": held_out}

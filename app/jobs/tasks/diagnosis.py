@@ -4,7 +4,7 @@ from typing import Any
 
 from app import __version__
 from app.conversion.diagnoses import findings
-from app.conversion.effects import effect_of, extended_model
+from app.conversion.effects import chosen_effects, extended_model
 from app.conversion.experiments import kept_batches
 from app.conversion.extremes import within_doubles
 from app.conversion.fields import field_named
@@ -14,8 +14,6 @@ from app.schemas.experiments import Experiment
 from app.schemas.models import Model
 from app.schemas.plants import Plant
 from identification.diagnosis.diagnose import diagnose
-from identification.effects.library import library
-from identification.places.place import Effect
 
 KIND = "diagnosis"
 FIELDS = {"effects": "/modelId", "model": "/modelId"}
@@ -31,14 +29,9 @@ def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
         context.progress(0.1, "the spectra of the experiments")
         batches = kept_batches(payload["experiments"], context.arrays, request.mean_value)
         context.progress(0.3, "what each effect would change")
-        found = diagnose(model, batches, _effects(request), request.amplitude_degree, request.seed)
+        effects = chosen_effects(request.effects, request.domain)
+        found = diagnose(model, batches, effects, request.amplitude_degree, request.seed)
         document = findings(found, experiments)
     kept = {name: payload["request"][name] for name in KEPT}
     traced = {"modelId": payload["model"]["id"], "experimentIds": [one.id for one in experiments]}
     return TaskResult({"softwareVersion": __version__, **kept, **traced, **document})
-
-
-def _effects(request: DiagnosisRequest) -> tuple[Effect, ...]:
-    if request.effects is None:
-        return library(request.domain)
-    return tuple(effect for kind in request.effects if (effect := effect_of(kind)) is not None)

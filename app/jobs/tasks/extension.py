@@ -5,13 +5,12 @@ from typing import Any
 
 import numpy as np
 
-from app import __version__
 from app.conversion.effects import effect_of, extended_model
 from app.conversion.experiments import kept_batches
-from app.conversion.extensions import extended_affine_documents, extended_documents
 from app.conversion.extremes import require_finite, within_doubles
 from app.conversion.fields import field_named
-from app.conversion.models import outcome_document, test_documents
+from app.conversion.models import test_documents
+from app.conversion.versions import version_document
 from app.jobs.task import TaskContext, TaskResult
 from app.schemas.extensions import ExtensionRequest
 from app.schemas.models import ErrorsDocument, ExtensionReport, Model
@@ -21,7 +20,7 @@ from identification.diagnosis.diagnose import misfit, rows_of
 from identification.diagnosis.evidence import refit_short_list
 from identification.diagnosis.scores import score_tests
 from identification.diagnosis.signatures import candidates
-from identification.diagnosis.staircase import relative_error
+from identification.diagnosis.staircase import refined, relative_error
 from identification.effects.second_variable import SecondVariable, with_logged
 from identification.errors import MisuseError
 from identification.extension.fit import Fit, fit
@@ -30,7 +29,6 @@ from identification.places.place import Effect
 
 KIND = "extension"
 FIELDS = {"effects": "/effect"}
-INHERITED = ("structure", "basis", "coefficientBases", "localEstimator", "lpvEstimator", "spectralEstimator")
 
 
 def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
@@ -55,14 +53,8 @@ def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
             before=_errors(base, batches, held_out),
             after=_errors(grown, batches, held_out),
         )
-        document = _documents(grown, parent)
-    return TaskResult({**_traced(payload, parent, request), **document, **_outcome(grown, report)})
-
-
-def _documents(grown: Fit, parent: Model) -> dict[str, Any]:
-    if parent.varying is None:
-        return extended_documents(grown.model)
-    return extended_affine_documents(grown.model, parent)
+        document = version_document(parent, parent.id, grown, payload["request"], report)
+    return TaskResult(document)
 
 
 def _effect(request: ExtensionRequest, quantity: str | None, batches: Sequence[Batch]) -> Effect:
@@ -84,8 +76,7 @@ def _grown(base: Fit, effect: Effect, request: ExtensionRequest) -> Fit:
             f"{effect.title}: fitted to these experiments it leaves its physical range; it is not what is missing",
             "effects",
         )
-    best = refitted[0].fit
-    return fit(best.model, best.rows, exact=best.rows.scaled)
+    return refined(refitted[0].fit)
 
 
 def _errors(found: Fit, batches: Sequence[Batch], held_out: Sequence[Batch]) -> ErrorsDocument:
@@ -94,24 +85,3 @@ def _errors(found: Fit, batches: Sequence[Batch], held_out: Sequence[Batch]) -> 
         held_out=relative_error(found.model, held_out) if held_out else None,
         lack_of_fit=test_documents((misfit("lack of fit", found),))[0],
     )
-
-
-def _traced(payload: dict[str, Any], parent: Model, request: ExtensionRequest) -> dict[str, Any]:
-    return {
-        **{name: payload["model"][name] for name in INHERITED},
-        **{name: payload["request"][name] for name in ("name", "description", "seed")},
-        "softwareVersion": __version__,
-        "origin": "extended",
-        "localModels": [],
-        "experimentIds": list(request.experiment_ids),
-        "designId": None,
-        "parentId": parent.id,
-    }
-
-
-def _outcome(grown: Fit, report: ExtensionReport) -> dict[str, Any]:
-    return {
-        "outcome": outcome_document(grown.outcome).as_json(),
-        "tests": [report.after.lack_of_fit.as_json()],
-        "extension": report.as_json(),
-    }
