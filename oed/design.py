@@ -1,21 +1,25 @@
 """Least-energy experiments with a certificate [Ghosh2018, (17), (19)]."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 
 from identification.arrays import FloatArray, IntArray
+from identification.errors import MisuseError
 from identification.outcome import Outcome
 from identification.signals import OperatingPoint
 from oed.box import refine_over_box
 from oed.column_generation import CertifiedSpectra, Progress, Shortfall, least_energy
+from oed.decisions import Decision
 from oed.duration import required_samples, supplementary_points
 from oed.information import noise_information, require_stable
 from oed.problem import DesignProblem
 from oed.scaling import ScaledProblem, scaled
 from oed.spectra.family import Spectrum
+from oed.spectra.multisines import MultisinePricing, Multisines
+from oed.statement import Statement, stated
+from oed.whole_periods import whole_periods
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,20 +48,37 @@ class Binding:
 class Design:
     """The experiments to do, and how good they are certified to be.
 
-    `total_energy` J (primal) and `lower_bound` (dual): no spectra of the family at any of the allowed points meet the
-    targets with less; `gap` = 1 − lower_bound / J. `samples` N_p is the duration asked for, or the next above
-    `required_samples` of rule (18); `expected_covariance` P_θ (k, k), infinite where nothing is learnt.
+    `total_energy` J is that of the experiments. `least_energy` is the same except where only whole periods can be
+    played, there that of parts of periods; `lower_bound` (dual): no spectra of the family at any of the allowed points
+    meet the targets with less; `gap` = 1 − lower_bound / least_energy. `samples` N_p is the duration asked for, or the
+    next above `required_samples` of rule (18); `expected_covariance` P (k, k) of θ_G, the parameters of the effects in
+    the model, and θ_H, infinite where nothing is learnt; `decisions`: what can be decided, by number of the target.
     """
 
     outcome: Outcome
     experiments: tuple[DesignedExperiment, ...]
     total_energy: float
+    least_energy: float
     lower_bound: float
     gap: float
     samples: int
     required_samples: float
     expected_covariance: FloatArray
     binding: tuple[Binding, ...]
+    decisions: tuple[tuple[int, Decision], ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class _Found:
+    """What the solver found for a statement: experiments, energies, what they tell about the hypotheses (K, K)."""
+
+    experiments: tuple[DesignedExperiment, ...]
+    energy: float
+    least_energy: float
+    lower_bound: float
+    learnt: FloatArray
+    binding: tuple[Binding, ...]
+    iterations: int
 
 
 def design(problem: DesignProblem, progress: Progress | None = None) -> Design:
@@ -65,19 +86,25 @@ def design(problem: DesignProblem, progress: Progress | None = None) -> Design:
 
         min J = Σ_m E_m   s.t.   P_θ⁻¹ ⪰ R_j for every target,   E_m ≤ α_m                 [Ghosh2018, (17), (19)]
 
-    An accuracy that cannot be reached gives the status "infeasible" and advice on what to change; raises MisuseError
-    when the model is unstable at a point or the targets do not fit the model.
+    Decisions about effects are such targets too, each about parameters of a hypothesis of its own. An accuracy that
+    cannot be reached gives the status "infeasible" and advice on what to change; raises MisuseError when the model is
+    unstable at a point or the targets do not fit the model.
     """
-    require_stable(problem.model, problem.points)
-    sources, targets = _target_matrices(problem)
-    k = problem.model.plant_size
-    missing = targets[:, :k, :k] - problem.prior[:k, :k]
-    open_targets = np.flatnonzero(
-        np.linalg.eigvalsh(missing)[:, -1] > 1e-9 * abs(targets[:, :k, :k]).max(initial=1e-300)
-    )
+    require_stable(problem.plant, problem.points)
+    if problem.box and isinstance(problem.family, Multisines):
+        raise MisuseError("candidate multisines need operating points to choose from; give a grid", "points")
+    return designed(problem, stated(problem), progress)
+
+
+def designed(problem: DesignProblem, statement: Statement, progress: Progress | None = None) -> Design:
+    """The design of a problem whose matrices are known."""
+    k = statement.plant
+    missing = statement.targets[:, :k, :k] - statement.prior[:k, :k]
+    largest = abs(statement.targets[:, :k, :k]).max(axis=(1, 2), initial=1e-300)
+    open_targets = np.flatnonzero(np.linalg.eigvalsh(missing)[:, -1] > 1e-9 * largest)
     if len(open_targets) == 0:
-        return _described(problem, targets, (), (0.0, 0.0), np.zeros((k, k)), (), 0)
-    problem_scaled = scaled(problem, missing[open_targets])
+        return _described(problem, statement, _Found((), 0.0, 0.0, 0.0, np.zeros((k, k)), (), 0))
+    problem_scaled = scaled(problem, statement, missing[open_targets])
     if isinstance(problem_scaled, Outcome):
         return _unreachable(problem, problem_scaled)
     solution, problem_scaled = _solved(problem_scaled, progress)
@@ -86,18 +113,23 @@ def design(problem: DesignProblem, progress: Progress | None = None) -> Design:
     if not solution.blocks:
         advice = "the solver found no spectra that meet the targets; relax the narrowest of the targets or the caps"
         return _unreachable(problem, Outcome("not_converged", advice, solution.iterations))
-    experiments = _experiments(problem_scaled, solution)
-    binding = _binding(problem_scaled, solution, sources[open_targets])
-    energies = (problem_scaled.unit * solution.energy, problem_scaled.unit * solution.lower_bound)
-    learnt = problem_scaled.information(solution.blocks, solution.weights)
-    return _described(problem, targets, experiments, energies, learnt, binding, solution.iterations)
+    return _described(problem, statement, _found(problem_scaled, solution, open_targets))
 
 
-def _target_matrices(problem: DesignProblem) -> tuple[IntArray, FloatArray]:
-    """For each matrix R_j the index of the target that it belongs to, and the matrices (J, k, k)."""
-    matrices = [target.matrices(problem.model) for target in problem.targets]
-    sources = np.repeat(np.arange(len(matrices)), [len(matrix) for matrix in matrices])
-    return sources.astype(np.int64), np.concatenate(matrices)
+def _found(problem: ScaledProblem, solution: CertifiedSpectra, open_targets: IntArray) -> _Found:
+    played, pricing, unit = solution, problem.pricing, problem.unit
+    if isinstance(pricing, MultisinePricing):
+        in_unit = replace(pricing, energies=pricing.energies / unit)
+        played = whole_periods(in_unit, solution, problem.targets, problem.caps)
+    return _Found(
+        _experiments(problem, played),
+        unit * played.energy,
+        unit * solution.energy,
+        unit * solution.lower_bound,
+        problem.information(played.blocks, played.weights),
+        _binding(problem, solution, open_targets),
+        solution.iterations,
+    )
 
 
 def _solved(problem: ScaledProblem, progress: Progress | None) -> tuple[CertifiedSpectra | Shortfall, ScaledProblem]:
@@ -109,7 +141,7 @@ def _solved(problem: ScaledProblem, progress: Progress | None) -> tuple[Certifie
 
 def _experiments(problem: ScaledProblem, solution: CertifiedSpectra) -> tuple[DesignedExperiment, ...]:
     experiments = []
-    for m in sorted({block.point for block in solution.blocks}, key=lambda m: tuple(problem.points[m])):
+    for m in sorted({block.point for block in solution.blocks}, key=lambda m: (*problem.points[m], m)):
         own = [
             (block, weight * problem.unit)
             for block, weight in zip(solution.blocks, solution.weights, strict=True)
@@ -122,46 +154,52 @@ def _experiments(problem: ScaledProblem, solution: CertifiedSpectra) -> tuple[De
     return tuple(experiments)
 
 
-def _binding(problem: ScaledProblem, solution: CertifiedSpectra, sources: IntArray) -> tuple[Binding, ...]:
-    shares = np.einsum("jab,jab->j", solution.prices, problem.targets) / solution.energy
-    by_target = np.bincount(sources, shares)
+def _binding(problem: ScaledProblem, solution: CertifiedSpectra, open_targets: IntArray) -> tuple[Binding, ...]:
+    by_target = np.zeros(len(problem.original.targets))
+    numbers = {int(j): n for n, j in enumerate(open_targets)}
+    whole = problem.basis.shape[0]
+    inverse = np.linalg.inv(problem.basis)
+    for target, j, rows in problem.statement.parts:
+        if j in numbers:
+            here = slice(rows.start, min(rows.stop, whole))
+            asked = (inverse.T @ problem.targets[numbers[j]] @ inverse)[here, here]
+            price = (problem.basis @ solution.prices[numbers[j]] @ problem.basis.T)[here, here]
+            by_target[target] += float(np.sum(asked * price)) / solution.energy
     targets = [Binding("target", int(i), float(by_target[i])) for i in np.flatnonzero(by_target > 1e-4)]
-    caps = [Binding("cap", int(m), float(solution.cap_prices[m])) for m in np.flatnonzero(solution.cap_prices > 1e-4)]
+    places = problem.pricing.places
+    caps = [
+        Binding("cap", int(places[m]), float(solution.cap_prices[m]))
+        for m in np.flatnonzero(solution.cap_prices > 1e-4)
+    ]
     return (*targets, *caps)
 
 
-def _described(
-    problem: DesignProblem,
-    targets: FloatArray,
-    experiments: Sequence[DesignedExperiment],
-    energies: tuple[float, float],
-    learnt: FloatArray,
-    binding: tuple[Binding, ...],
-    iterations: int,
-) -> Design:
-    k = problem.model.plant_size
-    energy, lower_bound = energies
-    gap = 1 - lower_bound / energy if energy > 0 else 0.0
-    points = np.array([experiment.operating_point for experiment in experiments]).reshape(-1, problem.points.shape[1])
-    per_sample = noise_information(problem.model, points)
-    noise_targets = targets[:, k:, k:] - problem.prior[k:, k:]
+def _described(problem: DesignProblem, statement: Statement, found: _Found) -> Design:
+    k = statement.plant
+    gap = 1 - found.lower_bound / found.least_energy if found.least_energy > 0 else 0.0
+    points = np.array([one.operating_point for one in found.experiments]).reshape(-1, problem.points.shape[1])
+    per_sample = noise_information(problem.plant, points)
+    noise_targets = statement.targets[:, k:, k:] - statement.prior[k:, k:]
     needed = required_samples(per_sample, noise_targets)
     samples = max(problem.samples, int(np.floor(needed)) + 1) if np.isfinite(needed) else problem.samples
-    information = problem.prior.copy()
-    information[:k, :k] += learnt
+    information = statement.prior.copy()
+    information[:k, :k] += found.learnt
     information[k:, k:] += samples * per_sample.sum(axis=0)
+    own = np.ix_(statement.own, statement.own)
     return Design(
-        _outcome(problem, gap, iterations)
+        _outcome(problem, gap, found.iterations)
         if np.isfinite(needed)
         else _noise_undetermined(problem, per_sample.sum(axis=0), noise_targets),
-        tuple(experiments),
-        float(energy),
-        float(lower_bound),
+        found.experiments,
+        float(found.energy),
+        float(found.least_energy),
+        float(found.lower_bound),
         float(gap),
         samples,
         needed,
-        _covariance(information, k),
-        binding,
+        _covariance(information[own], statement.subject.hypotheses[0].size),
+        found.binding,
+        statement.decisions(information),
     )
 
 
@@ -182,7 +220,7 @@ def _covariance(information: FloatArray, k: int) -> FloatArray:
 
 
 def _noise_undetermined(problem: DesignProblem, known: FloatArray, targets: FloatArray) -> Outcome:
-    further = supplementary_points(noise_information(problem.model, problem.points), known, targets)
+    further = supplementary_points(noise_information(problem.plant, problem.points), known, targets)
     where = "; ".join(", ".join(f"{value:g}" for value in problem.points[m]) for m in further)
     remedy = f"record without input at ({where}) as well" if further else "allow more operating points"
     return Outcome("infeasible", f"the designed experiments cannot determine the noise model: {remedy}")
@@ -201,10 +239,12 @@ def _shortfall_advice(shortfall: Shortfall) -> Outcome:
     return Outcome(
         "infeasible",
         f"under the energy caps at most {100 * share:.3g} % of the information asked for can be reached: {looser}raise"
-        " the caps, allow more operating points, or use prior experiments",
+        " the caps, allow more operating points, samples or levels, or use prior experiments",
     )
 
 
 def _unreachable(problem: DesignProblem, outcome: Outcome) -> Design:
-    k = problem.model.dependence.size
-    return Design(outcome, (), np.inf, np.inf, np.inf, problem.samples, np.inf, np.full((k, k), np.inf), ())
+    noise = problem.plant.dependence.size - problem.plant.plant_size
+    k = len(problem.extended.parameters) + noise
+    nothing = np.full((k, k), np.inf)
+    return Design(outcome, (), np.inf, np.inf, np.inf, np.inf, problem.samples, np.inf, nothing, ())

@@ -13,7 +13,7 @@ from identification.arrays import FloatArray
 from identification.errors import MisuseError
 from identification.outcome import Outcome
 from oed.information import sensitivity_moments
-from oed.problem import DesignProblem
+from oed.problem import DecisionTarget, DesignProblem
 from oed.spectra.fir import FirSpectra
 
 
@@ -35,11 +35,14 @@ def direct_design(problem: DesignProblem) -> DirectDesign:
     with X_{m,i} = (1/2π) ∫ Re(a a*) cos(iω) dω and c in units of energy. Raises MisuseError for other families than
     FIR spectra and for a box.
     """
-    if not isinstance(problem.family, FirSpectra) or problem.box:
-        raise MisuseError("the inequality as written is for FIR spectra on a grid; choose these", "family")
-    degree, k = problem.family.degree, problem.model.plant_size
-    moments = sensitivity_moments(problem.model, problem.points, degree, problem.step)
-    targets = np.concatenate([target.matrices(problem.model) for target in problem.targets])[:, :k, :k]
+    if not isinstance(problem.family, FirSpectra) or problem.box or problem.extended.effects:
+        raise MisuseError("the inequality as written is for FIR spectra on a grid, without effects", "family")
+    degree, model = problem.family.degree, problem.plant
+    k = model.plant_size
+    moments = sensitivity_moments(model, problem.points, degree, problem.step)
+    targets = np.concatenate(
+        [target.matrices(model) for target in problem.targets if not isinstance(target, DecisionTarget)]
+    )[:, :k, :k]
     basis = np.linalg.inv(np.linalg.cholesky(moments[:, 0].sum(axis=0))).T
     moments, targets = basis.T @ moments @ basis, basis.T @ targets @ basis
     energy = float(np.linalg.eigvalsh(targets)[:, -1].max())

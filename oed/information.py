@@ -34,21 +34,21 @@ def noise_information(model: LpvModel, points: ArrayLike) -> FloatArray:
     if transfer.size == 0:
         return np.zeros((len(transfer), transfer.shape[2], transfer.shape[2]))
     zeta = model.coefficients(points)
-    grid = _circle(model, points, 0, 1.0 if model.structure.sample_time is None else model.structure.sample_time)
+    grid = circle(model, points, 0, 1.0 if model.structure.sample_time is None else model.structure.sample_time)
     weighted = model.structure.noise_gradient(zeta, grid) / model.structure.noise_response(zeta, grid)[:, None, :]
-    mean = _cosine_moments(np.swapaxes(weighted, 1, 2), 0)[:, 0]
+    mean = cosine_moments(np.swapaxes(weighted, 1, 2), 0)[:, 0]
     return np.asarray(np.swapaxes(transfer, 1, 2) @ mean @ transfer)
 
 
 def sensitivity_moments(model: LpvModel, points: ArrayLike, degree: int, sample_time: float) -> FloatArray:
     """(1/2π) ∫ Re(a a*) cos(iΩ) dΩ, Ω = ω · sample_time in (−π, π), i = 0 … degree, as (M, degree + 1, k_G, k_G)."""
-    p, grid = model.dependence.points(points), _circle(model, points, degree, sample_time)
+    p, grid = model.dependence.points(points), circle(model, points, degree, sample_time)
     at_once = max(1, PRODUCTS_AT_ONCE // (len(grid) * model.plant_size**2))
     parts = (p[start : start + at_once] for start in range(0, len(p), at_once))
-    return np.concatenate([_cosine_moments(sensitivity(model, part, grid), degree) for part in parts])
+    return np.concatenate([cosine_moments(sensitivity(model, part, grid), degree) for part in parts])
 
 
-def _circle(model: LpvModel, points: ArrayLike, degree: int, sample_time: float) -> FloatArray:
+def circle(model: LpvModel, points: ArrayLike, degree: int, sample_time: float) -> FloatArray:
     """Frequencies from 0 to Nyquist on which the trapezoidal rule is exact to rounding in discrete time.
 
     A rational function with poles of radius ρ < 1 has moments that fall as ρ^i, and the rule on N points folds the
@@ -68,7 +68,7 @@ def _circle(model: LpvModel, points: ArrayLike, degree: int, sample_time: float)
     return np.linspace(0.0, np.pi / sample_time, fft.next_fast_len(int(count / 2) + 8, real=True) + 1)
 
 
-def _cosine_moments(rows: ComplexArray, degree: int) -> FloatArray:
+def cosine_moments(rows: ComplexArray, degree: int) -> FloatArray:
     """Fourier cosine coefficients 0 … degree of Re(a a*) for a (M, F, k) on a grid from 0 to Nyquist, (M, ·, k, k)."""
     upper = np.triu_indices(rows.shape[-1])
     columns = np.swapaxes(rows, 1, 2)

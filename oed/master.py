@@ -38,7 +38,7 @@ def solve_master(
     With `shortfall_only` the energy is free and the least t ≥ 0 is sought for which the targets (1 − t) R_j are met.
     """
     layout = _Layout([len(block.shapes) for block in blocks])
-    capped = np.flatnonzero(np.isfinite(caps))
+    capped = np.intersect1d(np.flatnonzero(np.isfinite(caps)), [block.point for block in blocks])
     k, j = targets.shape[-1], len(targets)
     information = np.hstack([_information_columns(block) for block in blocks])
     rows = [-layout.cone_rows(), _cap_rows(blocks, layout, capped), -np.tile(information, (j, 1))]

@@ -1,48 +1,69 @@
 """What a design is asked for."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 
 from identification.arrays import FloatArray, finite_floats
+from identification.comparison.batch import Batch
 from identification.errors import MisuseError, RangeError, ShapeError
+from identification.extension.model import ExtendedModel
 from identification.models import LpvModel
+from oed.decisions import Demand
 from oed.spectra.family import SpectrumFamily
 
 
-class Target(Protocol):
-    """An accuracy target; the plug-ins of `oed.targets`."""
+class AccuracyTarget(Protocol):
+    """How accurately θ is to be known; effects in the model are estimated with it."""
 
     def matrices(self, model: LpvModel) -> FloatArray:
         """Matrices R_j (J, k, k), block diagonal in θ_G and θ_H, with P_θ⁻¹ ⪰ R_j for all j [Ghosh2018, (15), (16)]."""
+
+
+@runtime_checkable
+class DecisionTarget(Protocol):
+    """What the experiments are to decide about effects."""
+
+    def demands(self, model: ExtendedModel, reference: Sequence[Batch], measured: bool) -> tuple[Demand, ...]:
+        """The hypotheses that decide it, with the accuracy that they need.
+
+        `reference`: experiments that were done (`measured`), or such as the spectrum family would do.
+        """
+
+
+Target = AccuracyTarget | DecisionTarget
 
 
 @dataclass(frozen=True, eq=False)
 class DesignProblem:
     """Least input energy for stated accuracy [Ghosh2018, (17)].
 
-    `model`: what is known of the plant (θ and σ_e² or their estimates); `points` (M, s): the operating points to choose
-    from, or with `box` the starting grid of a search over the whole range of the scheduling variables; `samples`: N_p
-    of each local experiment; `caps` (M,): the most energy α_m at each point, infinite for none (Remark 5);
-    `prior_information` (k, k): P⁻¹ of what earlier experiments told (Section 4); `band` in rad/s; `sample_time` of the
-    input in seconds, needed for models in continuous time; `tolerance`: relative gap to be certified.
+    `model`: what is known of the plant (θ and σ_e² or their estimates), with effects or without; `points` (M, s): the
+    operating points to choose from, or with `box` the starting grid of a search over the whole range of the scheduling
+    variables; `samples`: N_p of each local experiment; `caps` (M,): the most energy α_m at each point, infinite for
+    none (Remark 5); `prior_information` (k, k): P⁻¹ of what earlier experiments told (Section 4), in the order θ_G,
+    effects, θ_H; in its place `prior_experiments`, which also tell about effects that are not in the model; `band` in
+    rad/s; `sample_time` of the input in seconds, needed for models in continuous time; `tolerance`: relative gap to be
+    certified.
     """
 
-    model: LpvModel
+    model: LpvModel | ExtendedModel
     points: FloatArray
     targets: tuple[Target, ...]
     family: SpectrumFamily
     samples: int
     caps: FloatArray | None = None
     prior_information: FloatArray | None = None
+    prior_experiments: tuple[Batch, ...] = ()
     band: tuple[float, float] | None = None
     sample_time: float | None = None
     tolerance: float = 1e-4
     box: bool = False
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "points", self.model.dependence.points(self.points))
+        object.__setattr__(self, "points", self.plant.dependence.points(self.points))
         if len(self.points) == 0 or len(np.unique(self.points, axis=0)) < len(self.points):
             raise ShapeError("give at least one operating point, and each of them once", "points")
         if not self.targets:
@@ -56,9 +77,19 @@ class DesignProblem:
         self._check_band()
 
     @property
+    def extended(self) -> ExtendedModel:
+        """The model as one that may carry effects."""
+        return self.model if isinstance(self.model, ExtendedModel) else ExtendedModel(self.model)
+
+    @property
+    def plant(self) -> LpvModel:
+        """The model without effects."""
+        return self.extended.base
+
+    @property
     def step(self) -> float:
         """The sample time of the input in seconds."""
-        return self.model.structure.sample_time or self.sample_time or 0.0
+        return self.plant.structure.sample_time or self.sample_time or 0.0
 
     @property
     def limits(self) -> FloatArray:
@@ -66,10 +97,14 @@ class DesignProblem:
         return np.full(len(self.points), np.inf) if self.caps is None else self.caps
 
     @property
+    def size(self) -> int:
+        """Number of parameters of the model: θ_G, those of its effects, θ_H."""
+        return len(self.extended.parameters) - self.plant.plant_size + self.plant.dependence.size
+
+    @property
     def prior(self) -> FloatArray:
-        """The prior information (k, k), zero when there is none."""
-        k = self.model.dependence.size
-        return np.zeros((k, k)) if self.prior_information is None else self.prior_information
+        """The prior information (k, k) about the model itself, zero when there is none."""
+        return np.zeros((self.size, self.size)) if self.prior_information is None else self.prior_information
 
     def _check_caps(self) -> None:
         if self.caps is None:
@@ -85,7 +120,9 @@ class DesignProblem:
     def _check_prior(self) -> None:
         if self.prior_information is None:
             return
-        prior, k = finite_floats(self.prior_information, "prior_information"), self.model.dependence.size
+        if self.prior_experiments:
+            raise MisuseError("prior information and prior experiments would count twice", "prior_information")
+        prior, k = finite_floats(self.prior_information, "prior_information"), self.size
         object.__setattr__(self, "prior_information", prior)
         if prior.shape != (k, k):
             raise ShapeError(f"the prior information has shape {prior.shape}, it must be {(k, k)}", "prior_information")
@@ -93,7 +130,7 @@ class DesignProblem:
             raise RangeError("the prior information is not positive semidefinite", "prior_information")
 
     def _check_band(self) -> None:
-        if self.model.structure.sample_time is None and not (self.sample_time and self.sample_time > 0):
+        if self.plant.structure.sample_time is None and not (self.sample_time and self.sample_time > 0):
             raise MisuseError("give the sample time of the input; the model is in continuous time", "sample_time")
         if self.band is not None and not 0 <= self.band[0] <= self.band[1] <= np.pi / self.step * (1 + 1e-9):
             raise RangeError(

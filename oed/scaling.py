@@ -4,22 +4,26 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.linalg import block_diag
 
 from identification.arrays import FloatArray
 from identification.outcome import Outcome
+from oed.hypothesis import Hypothesis
 from oed.problem import DesignProblem
 from oed.spectra.family import Block, Pricing
+from oed.statement import Statement
 
 
 @dataclass(frozen=True, eq=False)
 class ScaledProblem:
-    """The problem for the parameters basis⁻¹ θ_G and energies in `unit`.
+    """The problem for the parameters basis⁻¹ (θ_G, …) of all hypotheses and energies in `unit`.
 
     There the information of flat spectra of energy one, together with the prior, is the unit matrix, and the largest
     eigenvalue of the targets is one.
     """
 
     original: DesignProblem
+    statement: Statement
     points: FloatArray
     pricing: Pricing
     targets: FloatArray
@@ -33,43 +37,67 @@ class ScaledProblem:
         return self.original.tolerance
 
     def information(self, blocks: Sequence[Block], weights: Sequence[FloatArray]) -> FloatArray:
-        """What the spectra tell about θ_G itself, (k_G, k_G)."""
+        """What the spectra tell about the parameters themselves, (K, K)."""
         inverse = np.linalg.inv(self.basis)
         total = np.sum([block.total(weight) for block, weight in zip(blocks, weights, strict=True)], axis=0)
         return np.asarray(self.unit * inverse.T @ total @ inverse)
 
     def priced(self, points: FloatArray) -> Pricing:
         """The family of the problem at other operating points (M, s), in the same units."""
-        problem = self.original
-        return problem.family.pricing(problem.model, points, problem.band, problem.step).transformed(self.basis)
+        problem, subject = self.original, self.statement.subject
+        return problem.family.pricing(subject, points, problem.band, problem.step).transformed(self.basis)
 
 
-def scaled(problem: DesignProblem, targets: FloatArray) -> ScaledProblem | Outcome:
-    """The problem in good units for targets R_j (J, k_G, k_G), less what prior information covers already.
+def scaled(problem: DesignProblem, statement: Statement, targets: FloatArray) -> ScaledProblem | Outcome:
+    """The problem in good units for targets R_j (J, K, K), less what prior information covers already.
 
-    An Outcome with advice when the operating points and frequencies cannot determine θ_G, whatever the energy.
+    An Outcome with advice when the operating points and frequencies cannot determine the parameters of a hypothesis,
+    whatever the energy.
     """
-    pricing = problem.family.pricing(problem.model, problem.points, problem.band, problem.step)
-    k = problem.model.plant_size
+    pricing = statement.pricing.within(problem.limits, problem.samples)
     flat = np.sum([block.information[0, 0] for block in pricing.flat()], axis=0)
-    diagonal = np.sqrt(np.diagonal(flat))
-    if np.any(diagonal <= 0):
-        return _undetermined(problem)
-    prior = problem.prior[:k, :k] / np.outer(diagonal, diagonal)
-    correlation = flat / np.outer(diagonal, diagonal)
-    values, vectors = np.linalg.eigh(correlation + prior / max(abs(prior).max(), 1.0))
-    if values[0] <= 1e-13 * values[-1]:
-        return _undetermined(problem)
-    basis = vectors / np.sqrt(values) / diagonal[:, None]
-    matrices = basis.T @ targets @ basis
+    bases = []
+    for one, rows in zip(statement.subject.hypotheses, statement.subject.slices, strict=True):
+        basis = _basis(flat[rows, rows], statement.prior[rows, rows])
+        if basis is None:
+            return _undetermined(problem, one)
+        bases.append(basis)
+    whole = np.asarray(block_diag(*bases))
+    matrices = whole.T @ targets @ whole
     unit = float(np.linalg.eigvalsh(matrices)[:, -1].max())
     return ScaledProblem(
-        problem, problem.points, pricing.transformed(basis), matrices / unit, problem.limits / unit, basis, unit
+        problem,
+        statement,
+        problem.points[pricing.places],
+        pricing.transformed(whole),
+        matrices / unit,
+        pricing.limits(problem.limits, problem.samples) / unit,
+        whole,
+        unit,
     )
 
 
-def _undetermined(problem: DesignProblem) -> Outcome:
-    needed = max(problem.model.dependence.sizes[: problem.model.structure.n_plant])
+def _basis(flat: FloatArray, prior: FloatArray) -> FloatArray | None:
+    """Coordinates in which flat spectra and the prior tell the same about everything; None where they tell nothing."""
+    diagonal = np.sqrt(np.diagonal(flat))
+    if np.any(diagonal <= 0):
+        return None
+    known = prior / np.outer(diagonal, diagonal)
+    correlation = flat / np.outer(diagonal, diagonal)
+    values, vectors = np.linalg.eigh(correlation + known / max(abs(known).max(), 1.0))
+    if values[0] <= 1e-13 * values[-1]:
+        return None
+    return np.asarray(vectors / np.sqrt(values) / diagonal[:, None])
+
+
+def _undetermined(problem: DesignProblem, one: Hypothesis) -> Outcome:
+    if one.suspected is not None or one.rival is not None:
+        return Outcome(
+            "infeasible",
+            "none of these experiments shows what is to be decided about an effect: the parameters of the model take up"
+            " all that it changes; add operating points, levels or frequencies",
+        )
+    needed = max(problem.plant.dependence.sizes[: problem.plant.structure.n_plant])
     return Outcome(
         "infeasible",
         f"no input at these {len(problem.points)} operating points determines all parameters of the plant; at least"

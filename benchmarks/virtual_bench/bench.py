@@ -44,10 +44,11 @@ def experiments(generator, points=7, levels=(20.0, 10.0)):
     phases = generator.uniform(0, 2 * np.pi, (len(where), len(lines)))
     amplitude = np.tile(levels, points) * np.sqrt(2 / len(lines))
     phasors = amplitude[:, None] * np.exp(1j * phases)
-    return Experiments(where, *_played(phasors, lines), phasors, lines)
+    return Experiments(where, *on_half_steps(phasors, lines), phasors, lines)
 
 
-def _played(phasors, lines):
+def on_half_steps(phasors, lines):
+    """Inputs and their derivatives on the half-step grid of one period, from the phasors of the lines."""
     grid = 2 * STEPS * PERIOD
     omega = 2 * np.pi * lines / (PERIOD * SAMPLE_TIME)
     spectrum = np.zeros((2, len(phasors), grid // 2 + 1), dtype=complex)

@@ -35,6 +35,14 @@ class FilterSpectrum(Spectrum, Protocol):
 
 
 @runtime_checkable
+class FixedSignal(Spectrum, Protocol):
+    """A design that is a signal already: what it shows depends on its level and phases."""
+
+    def period(self) -> FloatArray:
+        """One period of the signal."""
+
+
+@runtime_checkable
 class Designed(Protocol):
     """A designed experiment, of which only the spectrum is needed here."""
 
@@ -64,6 +72,7 @@ def realise(
     right on average. No signal is clipped, which would change its spectrum. Where the limit binds, the multisine is
     played for as many whole periods as are needed, the noise drawn anew for a longer record, with the same energy.
 
+    A design that is a signal already is played as it is, `periods` times; an amplitude limit can only refuse it.
     `oversampling` is that of `multisine`; above 1 the limit holds between the samples too, where the reconstruction
     filter of the player fills them in. The same generator state gives the same signal. Raises RangeError for a sample
     time or limit that is not positive, or fewer than one period or sample; MisuseError for noise that is asked to have
@@ -72,6 +81,8 @@ def realise(
     spectrum = experiment.spectrum if isinstance(experiment, Designed) else experiment
     _check(sample_time, periods, samples, amplitude_limit)
     random = np.random.default_rng(generator)
+    if isinstance(spectrum, FixedSignal):
+        return _as_designed(spectrum, samples, sample_time, method, periods, amplitude_limit)
     if method == "multisine":
         index, energy = spectrum.line_energies(samples, sample_time)
         period = multisine(index, energy, samples, random, oversampling=oversampling)
@@ -101,6 +112,36 @@ def realise(
         amplitude_limit=amplitude_limit,
         amplitude_limit_binds=binds,
         needed_samples=needed * len(signal) if binds else None,
+    )
+
+
+def _as_designed(
+    spectrum: FixedSignal, samples: int, sample_time: float, method: Method, periods: int, limit: float | None
+) -> RealisedSignal:
+    if method != "multisine":
+        raise MisuseError("method: the design is a multisine of fixed phases; play it as one", "method")
+    signal = spectrum.period()
+    index, _ = spectrum.line_energies(samples, sample_time)
+    peak = float(np.abs(signal).max())
+    if limit is not None and peak > limit:
+        raise RangeError(
+            f"amplitude_limit: the designed signal reaches {peak:g}; design with lower levels", "amplitude_limit"
+        )
+    achieved = periods * signal_line_energies(signal)
+    requested = np.zeros_like(achieved)
+    requested[index] = achieved[index]
+    return RealisedSignal(
+        signal=signal,
+        periods=periods,
+        sample_time=sample_time,
+        method=method,
+        crest_factor=crest_factor(signal),
+        crest_factor_between_samples=crest_factor(signal, INTERPOLATION),
+        requested_energies=requested,
+        achieved_energies=achieved,
+        amplitude_limit=limit,
+        amplitude_limit_binds=False,
+        needed_samples=None,
     )
 
 

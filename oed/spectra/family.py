@@ -8,7 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from identification.arrays import BoolArray, FloatArray, IntArray
-from identification.models import LpvModel
+from identification.comparison.batch import Batch
+from identification.extension.model import ExtendedModel
+from oed.subject import Subject
 
 NEARLY = 0.97
 MOST_OFFERED = 100
@@ -43,7 +45,21 @@ class Spectrum(Protocol):
 
 
 class Pricing(Protocol):
-    """Spectra of one family at M operating points, searched for what they are worth."""
+    """Spectra of one family at M operating points, searched for what they are worth.
+
+    A family may offer several local experiments at an operating point; a block's `point` is the number of its
+    experiment, and `places` gives the operating point of each.
+    """
+
+    @property
+    def places(self) -> IntArray:
+        """The operating points (E,) of the local experiments."""
+
+    def limits(self, caps: FloatArray, samples: int) -> FloatArray:
+        """The most energy (E,) in each, for caps (M,) at the operating points and experiments of `samples`."""
+
+    def within(self, caps: FloatArray, samples: int) -> "Pricing":
+        """The experiments that caps (M,) and `samples` allow."""
 
     def flat(self) -> list[Block]:
         """At every point a spectrum of energy one that excites all frequencies of the band alike."""
@@ -61,7 +77,7 @@ class Pricing(Protocol):
         """The same for the parameters `basis`⁻¹ θ_G, whose information is basisᵀ (·) basis."""
 
     def spectrum(self, blocks: Sequence[Block], weights: Sequence[FloatArray]) -> Spectrum:
-        """The spectrum that blocks of one point make together."""
+        """The spectrum that blocks of one local experiment make together."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,6 +100,11 @@ class SpectrumFamily(Protocol):
     """A parametrised set of spectra; the plug-ins of `oed.spectra`."""
 
     def pricing(
-        self, model: LpvModel, points: ArrayLike, band: tuple[float, float] | None, sample_time: float
+        self, subject: Subject, points: ArrayLike, band: tuple[float, float] | None, sample_time: float
     ) -> Pricing:
         """Prepare the family at the operating points (M, s), limited to a band (rad/s) where the family can be."""
+
+    def reference(
+        self, model: ExtendedModel, points: ArrayLike, band: tuple[float, float] | None, sample_time: float
+    ) -> tuple[Batch, ...]:
+        """Experiments of the family without preference, for models to be fitted to each other; outputs zero."""

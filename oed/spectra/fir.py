@@ -9,14 +9,17 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from identification.arrays import FloatArray, IntArray
+from identification.comparison.batch import Batch
 from identification.errors import RangeError
-from identification.models import LpvModel
-from oed.information import sensitivity_moments
+from identification.extension.model import ExtendedModel
+from oed.hypothesis import response_batch
 from oed.spectra.family import NEARLY, Block, Offer, foremost
+from oed.subject import Subject
 
 LARGEST_DEGREE = 1000
 MOST_NEW = 3
 NEGLIGIBLE = 1e-5
+REFERENCE = 257
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,12 +68,18 @@ class FirSpectra:
             raise RangeError(f"the degree is {self.degree}; it must lie between 0 and {LARGEST_DEGREE}", "degree")
 
     def pricing(
-        self, model: LpvModel, points: ArrayLike, band: tuple[float, float] | None, sample_time: float
+        self, subject: Subject, points: ArrayLike, band: tuple[float, float] | None, sample_time: float
     ) -> "FirPricing":
         """Prepare the moments at the operating points (M, s); raises RangeError when a band is asked for."""
         if band is not None:
             raise RangeError("an FIR spectrum has no band limits; use line spectra, or leave the band open", "band")
-        return FirPricing(sensitivity_moments(model, points, self.degree, sample_time), sample_time)
+        return FirPricing(subject.moments(points, self.degree, sample_time), sample_time)
+
+    def reference(
+        self, model: ExtendedModel, points: ArrayLike, band: tuple[float, float] | None, sample_time: float
+    ) -> tuple[Batch, ...]:
+        """The same energy on frequencies up to the Nyquist frequency, at every point."""
+        return (response_batch(model.base, points, np.linspace(0, np.pi / sample_time, REFERENCE)),)
 
     @classmethod
     def example(cls) -> "FirSpectra":
@@ -84,6 +93,19 @@ class FirPricing:
 
     moments: FloatArray
     sample_time: float
+
+    @property
+    def places(self) -> IntArray:
+        """One local experiment an operating point."""
+        return np.arange(len(self.moments))
+
+    def limits(self, caps: FloatArray, samples: int) -> FloatArray:
+        """The caps; energy is spread over whatever time there is."""
+        return caps
+
+    def within(self, caps: FloatArray, samples: int) -> "FirPricing":
+        """All experiments; each may have as little energy as it is given."""
+        return self
 
     def flat(self) -> list[Block]:
         """White noise."""

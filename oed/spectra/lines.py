@@ -1,19 +1,22 @@
 """Line spectra: power at the lines of a periodic record only."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from identification.arrays import ComplexArray, FloatArray, IntArray
+from identification.comparison.batch import Batch
 from identification.errors import RangeError
-from identification.models import LpvModel
-from oed.information import sensitivity
+from identification.extension.model import ExtendedModel
+from oed.hypothesis import response_batch
 from oed.spectra.family import NEARLY, Block, Offer, foremost
+from oed.subject import Subject
 
 MOST_SENSITIVITIES = 2**26
+MOST_REFERENCE = 256
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,9 +62,27 @@ class LineSpectra:
             raise RangeError(f"a period of {self.samples} samples has no lines; use more samples", "samples")
 
     def pricing(
-        self, model: LpvModel, points: ArrayLike, band: tuple[float, float] | None, sample_time: float
+        self, subject: Subject, points: ArrayLike, band: tuple[float, float] | None, sample_time: float
     ) -> "LinePricing":
         """Prepare the lines inside the band at the operating points (M, s); raises RangeError for an empty band."""
+        indices, frequencies = self._lines(band, sample_time)
+        if len(frequencies) * np.shape(points)[0] * subject.size > MOST_SENSITIVITIES:
+            raise RangeError(
+                f"{len(frequencies)} lines at {np.shape(points)[0]} operating points are more than fits into memory;"
+                " use fewer samples per period, a narrower band, or fewer operating points",
+                "samples",
+            )
+        sensitivities = subject.sensitivity(points, frequencies)
+        return LinePricing(frequencies, indices, self.samples, sensitivities, subject.mask)
+
+    def reference(
+        self, model: ExtendedModel, points: ArrayLike, band: tuple[float, float] | None, sample_time: float
+    ) -> tuple[Batch, ...]:
+        """The same energy on lines all over the band, at every point."""
+        frequencies = self._lines(band, sample_time)[1]
+        return (response_batch(model.base, points, frequencies[:: 1 + len(frequencies) // MOST_REFERENCE]),)
+
+    def _lines(self, band: tuple[float, float] | None, sample_time: float) -> tuple[IntArray, FloatArray]:
         indices = np.arange(self.samples // 2 + 1)
         line_spacing = 2 * np.pi / (self.samples * sample_time)
         if band is not None:
@@ -69,14 +90,7 @@ class LineSpectra:
             indices = indices[(indices >= band[0] / line_spacing - slack) & (indices <= band[1] / line_spacing + slack)]
         if len(indices) == 0:
             raise RangeError("no line of the record lies in the frequency band; widen it or use more samples", "band")
-        frequencies = np.asarray(indices * line_spacing, dtype=np.float64)
-        if len(frequencies) * np.shape(points)[0] * model.plant_size > MOST_SENSITIVITIES:
-            raise RangeError(
-                f"{len(frequencies)} lines at {np.shape(points)[0]} operating points are more than fits into memory;"
-                " use fewer samples per period, a narrower band, or fewer operating points",
-                "samples",
-            )
-        return LinePricing(frequencies, indices, self.samples, sensitivity(model, points, frequencies))
+        return indices, np.asarray(indices * line_spacing, dtype=np.float64)
 
     @classmethod
     def example(cls) -> "LineSpectra":
@@ -86,17 +100,34 @@ class LineSpectra:
 
 @dataclass(frozen=True, eq=False)
 class LinePricing:
-    """The lines at M points: `sensitivities` a (M, F, k); a block's only shape holds the number of its line."""
+    """The lines at M points: `sensitivities` a (M, F, k) whose products count where `mask` (k, k) is one.
+
+    A block's only shape holds the number of its line.
+    """
 
     frequencies: FloatArray
     indices: IntArray
     samples: int
     sensitivities: ComplexArray
+    mask: FloatArray
+
+    @property
+    def places(self) -> IntArray:
+        """One local experiment an operating point."""
+        return np.arange(len(self.sensitivities))
+
+    def limits(self, caps: FloatArray, samples: int) -> FloatArray:
+        """The caps; energy is spread over whatever time there is."""
+        return caps
+
+    def within(self, caps: FloatArray, samples: int) -> "LinePricing":
+        """All experiments; each may have as little energy as it is given."""
+        return self
 
     def flat(self) -> list[Block]:
         """Equal energy on all lines, as a block without a line of its own."""
         information = np.einsum("mfi,mfj->mij", self.sensitivities, self.sensitivities.conj()).real
-        mean = information / len(self.frequencies)
+        mean = self.mask * information / len(self.frequencies)
         return [Block(m, np.full((1, 1), -1.0), matrix[None, None]) for m, matrix in enumerate(mean)]
 
     def best(
@@ -104,7 +135,7 @@ class LinePricing:
     ) -> Offer:
         """a* Z a on all lines; offered are the highest peaks that are worth their charge, and the lines in use."""
         a = self.sensitivities
-        worth = np.einsum("mfi,mfi->mf", (a @ prices), a.conj()).real
+        worth = np.einsum("mfi,mfi->mf", (a @ (self.mask * prices)), a.conj()).real
         highest = worth.max(axis=1)
         padded = np.pad(worth, [(0, 0), (1, 1)], constant_values=-np.inf)
         peak = (worth >= padded[:, :-2]) & (worth >= padded[:, 2:])
@@ -118,7 +149,7 @@ class LinePricing:
 
     def transformed(self, basis: FloatArray) -> "LinePricing":
         """The same for the parameters basis⁻¹ θ_G."""
-        return LinePricing(self.frequencies, self.indices, self.samples, self.sensitivities @ basis)
+        return replace(self, sensitivities=self.sensitivities @ basis)
 
     def spectrum(self, blocks: Sequence[Block], weights: Sequence[FloatArray]) -> LineSpectrum:
         """The lines of blocks of one point, in the order of frequency."""
@@ -131,4 +162,4 @@ class LinePricing:
 
     def _block(self, point: int, line: int) -> Block:
         a = self.sensitivities[point, line]
-        return Block(int(point), np.full((1, 1), float(line)), np.outer(a, a.conj()).real[None, None])
+        return Block(int(point), np.full((1, 1), float(line)), (self.mask * np.outer(a, a.conj()).real)[None, None])
