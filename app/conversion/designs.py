@@ -5,12 +5,16 @@ from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
+from scipy.linalg import block_diag
 
-from app.schemas.designs import MAX_POINTS, AxesGrid, Box, DesignRequest, PointGrid
+from app.arrays import finite_or_none
+from app.schemas.designs import MAX_POINTS, AxesGrid, Box, DecisionDocument, DesignRequest, PointGrid
 from identification.arrays import FloatArray
 from identification.errors import MisuseError, RangeError, ShapeError
+from identification.extension.model import ExtendedModel
 from identification.models import LpvModel
 from identification.scheduling import OneVariableBasis, ParameterDependence
+from oed.decisions import Decision
 
 SAME_POINT = 1e-9
 
@@ -86,15 +90,42 @@ def searched_model(request: DesignRequest, model: LpvModel) -> LpvModel:
     return replace(model, dependence=ParameterDependence(narrowed, bases))
 
 
-def prior_information(model: LpvModel, known: bool) -> FloatArray:
-    """P_θ⁻¹ of a model; raises MisuseError when its covariance is not known or singular."""
-    if not known:
+def prior_information(model: ExtendedModel, known: bool) -> FloatArray:
+    """P⁻¹ of θ_G, the parameters of the effects and θ_H; raises MisuseError when P is not known or singular."""
+    if not model.effects:
+        if not known:
+            raise MisuseError("the model has no covariance that could be prior information", "use_prior_information")
+        return _inverse(model.base.covariance)
+    if model.covariance is None:
         raise MisuseError("the model has no covariance that could be prior information", "use_prior_information")
-    scale = np.sqrt(np.diagonal(model.covariance))
-    if np.any(scale <= 0) or np.linalg.cond(model.covariance / np.outer(scale, scale)) > 1e13:
+    noise = model.base.dependence.size - model.base.plant_size
+    return np.asarray(block_diag(_inverse(model.covariance), np.zeros((noise, noise))))
+
+
+def _inverse(covariance: FloatArray) -> FloatArray:
+    scale = np.sqrt(np.diagonal(covariance))
+    if np.any(scale <= 0) or np.linalg.cond(covariance / np.outer(scale, scale)) > 1e13:
         raise MisuseError("the covariance of the model is singular", "use_prior_information")
-    inverse = np.linalg.inv(model.covariance / np.outer(scale, scale)) / np.outer(scale, scale)
+    inverse = np.linalg.inv(covariance / np.outer(scale, scale)) / np.outer(scale, scale)
     return np.asarray((inverse + inverse.T) / 2)
+
+
+def decision_document(target: int, decision: Decision) -> DecisionDocument:
+    """What can be decided about an effect."""
+    demand, detection = decision.demand, decision.demand.against is None
+    return DecisionDocument(
+        target_index=target,
+        question=decision.question,
+        effect=demand.kind,
+        against=demand.against,
+        amplitude=demand.amplitude if detection else None,
+        expected_variance=finite_or_none(decision.variance) if detection else None,
+        noncentrality=decision.noncentrality,
+        asked_power=demand.rates.power,
+        level=demand.rates.level,
+        expected_power=decision.power,
+        probability_of_weight_above95=decision.conviction,
+    )
 
 
 def _grid(given: AxesGrid | Box) -> FloatArray:

@@ -22,6 +22,7 @@ from app.services import designs, models, signals
 from app.services.measured import Measured
 from app.virtual_plant.campaign import SAMPLE_TIME
 from identification.errors import MisuseError
+from identification.extension.model import ExtendedModel
 from identification.models import LpvModel
 from oed.design import design
 from oed.spectra.fir import FirSpectra
@@ -134,7 +135,7 @@ def _alternatives(
     s times the first experiment give s P_θ₁⁻¹ ⪰ R, so s is the largest eigenvalue of R P_θ₁.
     """
     known = kept_model(first, plant)
-    problem = replace(stated_problem(request, known, True), family=FirSpectra(0), band=None)
+    problem = replace(stated_problem(request, ExtendedModel(known), True), family=FirSpectra(0), band=None)
     sigma = (1 - task.MARGIN) * task.ASKED
     times = float(np.linalg.eigvalsh(known.covariance / np.outer(sigma, sigma))[-1])
     return (

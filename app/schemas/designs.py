@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import Field
 
-from app.arrays import Matrix, Vector
+from app.arrays import ComplexVector, Matrix, Vector
 from app.schemas.common import CamelModel, Double, Integer, Timestamp
 from app.schemas.experiments import Identifier
 from app.schemas.families import AccuracyTarget, SpectrumFamily
@@ -97,6 +97,13 @@ class DesignRequest(CamelModel):
     use_prior_information: bool = Field(
         default=False, description="count the accuracy that the model already has, and design what is missing"
     )
+    prior_experiment_ids: Annotated[list[Identifier], Field(min_length=1, max_length=1000)] | None = Field(
+        default=None,
+        description="in place of that, experiments whose information counts, also about effects that the model lacks",
+    )
+    noise_variance: Positive | None = Field(
+        default=None, description="of the white noise e, a sample; null: that of the model"
+    )
     tolerance: Annotated[Double, Field(ge=1e-8, le=0.1)] = Field(
         default=1e-4, description="relative gap between energy and lower bound that is certified"
     )
@@ -112,6 +119,19 @@ class LineSpectrumDocument(CamelModel):
     period_samples: Integer = Field(description="samples of the period that holds these lines")
 
 
+class MultisineSpectrumDocument(CamelModel):
+    """A signal of a fixed level, u(t) = Re Σ A e^{jωt}, and how many of its periods are played."""
+
+    kind: Literal["multisine"]
+    line_indices: list[Integer] = Field(description="which multiples of the lowest line of the period")
+    frequencies_rad_per_second: Vector
+    phasors: ComplexVector = Field(description="A of each line, in the unit of the input")
+    level: Double = Field(description="root mean square of the signal")
+    energies: Vector = Field(description="Σ u(t)² of each line over all periods")
+    period_samples: Integer
+    periods: Integer
+
+
 class FirSpectrumDocument(CamelModel):
     """N Φ(ω) = c0 + 2 Σ c_i cos(iωT): the spectrum of white noise through an FIR filter, in units of energy."""
 
@@ -120,9 +140,9 @@ class FirSpectrumDocument(CamelModel):
 
 
 if TYPE_CHECKING:
-    Spectrum = LineSpectrumDocument | FirSpectrumDocument
+    Spectrum = LineSpectrumDocument | FirSpectrumDocument | MultisineSpectrumDocument
 else:
-    Spectrum = named_union("Spectrum", (LineSpectrumDocument, FirSpectrumDocument), "kind")
+    Spectrum = named_union("Spectrum", (LineSpectrumDocument, FirSpectrumDocument, MultisineSpectrumDocument), "kind")
 
 
 class SpectrumCurve(CamelModel):
@@ -152,6 +172,26 @@ class BindingDocument(CamelModel):
     )
 
 
+class DecisionDocument(CamelModel):
+    """What the experiments can be expected to decide about an effect."""
+
+    target_index: Integer = Field(description="which of the targets, from zero")
+    question: Literal["detection", "discrimination"]
+    effect: str = Field(description="kind of the effect that is there")
+    against: str | None = Field(description="kind of the effect that is to be rejected; null for a detection")
+    amplitude: Double | None = Field(description="of the effect that is to be seen; null for a discrimination")
+    expected_variance: Double | None = Field(
+        description="of the amplitude, the largest in any direction; null for a discrimination, or when nothing is seen"
+    )
+    noncentrality: Double = Field(description="squared distance from the model without, or with the other effect")
+    asked_power: Double
+    level: Double
+    expected_power: Double
+    probability_of_weight_above95: Double | None = Field(
+        description="that the diagnosis gives the right effect over 95 % of the weight; null for a detection"
+    )
+
+
 class Design(CamelModel):
     """The experiments that reach the accuracy asked for with the least energy, and the certificate of it."""
 
@@ -166,14 +206,18 @@ class Design(CamelModel):
     sample_time_seconds: Double
     experiments: list[DesignedExperimentDocument]
     total_energy: Double | None = Field(description="Σ u(t)² over all experiments; null when infeasible")
+    least_energy: Double | None = Field(
+        default=None, description="the same, and for candidate multisines with parts of periods; what the gap refers to"
+    )
     lower_bound: Double | None = Field(description="no experiment at all within the request needs less energy")
-    gap: Double | None = Field(description="(totalEnergy − lowerBound)/totalEnergy")
+    gap: Double | None = Field(description="(leastEnergy − lowerBound)/leastEnergy")
     samples: Integer = Field(description="samples of each local experiment, as many as the noise model needs")
     required_samples: Double | None = Field(description="least number of samples for the accuracy of the noise model")
-    parameter_names: list[str]
-    expected_covariance: Matrix | None = Field(description="of theta after the experiments")
+    parameter_names: list[str] = Field(description="those of the effects in the model stand between those of G and H")
+    expected_covariance: Matrix | None = Field(description="of these parameters after the experiments")
     expected_standard_deviations: Vector | None
     binding: list[BindingDocument]
+    decisions: list[DecisionDocument] = Field(default_factory=list, description="of targets about effects")
 
 
 class DesignList(CamelModel):

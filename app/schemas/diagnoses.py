@@ -7,6 +7,7 @@ from pydantic import Field, model_validator
 from app.arrays import ComplexVector, Matrix, Vector
 from app.schemas.common import CamelModel, Double, Integer, Timestamp
 from app.schemas.comparisons import ExperimentIds
+from app.schemas.designs import DesignRequest
 from app.schemas.effects import EffectParameter, PlacedEffectDocument
 from app.schemas.experiments import Identifier
 from app.schemas.outcomes import OutcomeDocument, TestDocument
@@ -140,6 +141,11 @@ class Diagnosis(CamelModel):
     ranking: list[RankedEffect]
     confusability: Matrix = Field(
         description="squared cosine between the signatures, in the order of `ranking`; 1: cannot be told apart here"
+    )
+    deciding_design: DesignRequest | None = Field(
+        default=None,
+        description="ready to post: the experiments that tell the announced effects apart; null where there is one"
+        " effect or none, or where no signals were played that tell levels and period",
     )
     visibility: list[EffectVisibility] = Field(description="of every effect that was to be judged")
     missing: list[MissingResponse]

@@ -1,5 +1,6 @@
 """Designs: asked for, and made in a job."""
 
+from collections.abc import Sequence
 from typing import Any
 
 from app.container import Container
@@ -13,7 +14,8 @@ from app.schemas.models import Model
 from app.schemas.plants import Plant
 from app.services.documents import fields, items, named, of_plant
 from app.services.jobs import fingerprint
-from app.services.models import model_of, require_without_effects
+from app.services.measured import Measured, check_logged, check_time_domain, measured_of_plant, payload_of
+from app.services.models import model_of
 from app.services.plants import plant_of
 from app.store.resources import Resource, ResourceRepository
 
@@ -25,14 +27,18 @@ def submit(container: Container, request: DesignRequest, key: str | None) -> Job
     """Start the job that designs experiments."""
     plant = plant_of(named(container.resources, "plants", request.plant_id, "/plantId"))
     row = of_plant(named(container.resources, "models", request.model_id, "/modelId"), plant.id, "/modelId")
-    task = payload(plant, model_of(row), request)
+    experiments = []
+    if request.prior_experiment_ids is not None:
+        pointer = "/priorExperimentIds"
+        experiments = measured_of_plant(container.resources, request.prior_experiment_ids, plant.id, pointer)
+    task = payload(plant, model_of(row), request, experiments)
     mark = fingerprint("createDesign", request.model_dump(mode="json"))
     return container.ledger.submit("design", task, KIND, plant.id, key, mark)
 
 
-def payload(plant: Plant, model: Model, request: DesignRequest) -> dict[str, Any]:
-    """What the task gets; raises UnprocessableError when the request does not fit plant and model."""
-    require_without_effects(model, "/modelId")
+def payload(plant: Plant, model: Model, request: DesignRequest, experiments: Sequence[Measured] = ()) -> dict[str, Any]:
+    """What the task gets; raises UnprocessableError when the request does not fit plant, model and experiments."""
+    _check_prior(model, request, experiments)
     with pointing({}, default="/modelId"):
         known = kept_model(model, plant)
     with pointing(POINTERS, default="/operatingPoints"):
@@ -40,15 +46,30 @@ def payload(plant: Plant, model: Model, request: DesignRequest) -> dict[str, Any
         points = candidate_points(request, searched.dependence)
     with pointing(POINTERS, default="/energyCaps"):
         energy_caps(request, points, searched.dependence)
-    if not known.noise_variance > 0:
+    if request.noise_variance is None and not known.noise_variance > 0:
         raise UnprocessableError.at("/modelId", "the model has no noise, so any experiment would be accurate enough")
     if not known.structure.is_discrete and request.sample_time_seconds is None:
         raise UnprocessableError.at("/sampleTimeSeconds", "needed for a plant in continuous time")
-    if request.use_prior_information and model.covariance is None:
-        raise UnprocessableError.at("/usePriorInformation", "the model has no covariance")
     if request.band is not None and request.band.minimum_rad_per_second > request.band.maximum_rad_per_second:
         raise UnprocessableError.at("/band", "the band must rise")
-    return {"plant": plant.as_json(), "model": model.as_json(), "request": request.as_json()}
+    return {
+        "plant": plant.as_json(),
+        "model": model.as_json(),
+        "request": request.as_json(),
+        "experiments": payload_of(experiments),
+    }
+
+
+def _check_prior(model: Model, request: DesignRequest, experiments: Sequence[Measured]) -> None:
+    """Raises UnprocessableError when what is known already cannot be counted."""
+    covariance = model.joint_covariance if model.effects else model.covariance
+    if request.use_prior_information and covariance is None:
+        raise UnprocessableError.at("/usePriorInformation", "the model has no covariance")
+    if request.use_prior_information and experiments:
+        detail = "the model was learnt from experiments too, and what they tell would count twice; give one of the two"
+        raise UnprocessableError.at("/priorExperimentIds", detail)
+    check_time_domain(model, experiments, "/priorExperimentIds")
+    check_logged(model, experiments, "/priorExperimentIds")
 
 
 def design_of(resource: Resource) -> Design:

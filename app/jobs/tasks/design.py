@@ -1,6 +1,7 @@
 """Designs the experiments of least energy."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -8,19 +9,30 @@ from pydantic.alias_generators import to_camel
 
 from app import __version__
 from app.arrays import finite_list_or_none, finite_or_none
-from app.conversion.designs import candidate_points, energy_caps, prior_information, searched_model
+from app.conversion.designs import (
+    candidate_points,
+    decision_document,
+    energy_caps,
+    prior_information,
+    searched_model,
+)
+from app.conversion.effects import extended_model
+from app.conversion.experiments import kept_batches
+from app.conversion.extensions import joint_names
 from app.conversion.extremes import within_doubles
 from app.conversion.fields import field_named
-from app.conversion.models import kept_model, outcome_document, standard_deviations
+from app.conversion.models import outcome_document, standard_deviations
 from app.conversion.spectra import curve, spectrum_document
 from app.jobs.task import TaskContext, TaskResult
 from app.schemas.designs import BindingDocument, Box, DesignedExperimentDocument, DesignRequest
 from app.schemas.models import Model
 from app.schemas.plants import Plant
+from identification.comparison.batch import Batch
 from identification.errors import MisuseError
+from identification.extension.model import ExtendedModel, require_matching
 from identification.models import LpvModel
 from oed.design import Binding, Design, design
-from oed.problem import DesignProblem, Target
+from oed.problem import DecisionTarget, DesignProblem, Target
 
 KIND = "design"
 FIELDS = {
@@ -37,6 +49,9 @@ FIELDS = {
     "targets": "/targets",
     "model": "/modelId",
     "degree": "/spectrumFamily/degree",
+    "levels": "/spectrumFamily/levels",
+    "family": "/spectrumFamily",
+    **dict.fromkeys(("effect", "effects", "against", "amplitude"), "/targets"),
 }
 
 
@@ -46,28 +61,39 @@ def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
     plant = Plant.model_validate(payload["plant"])
     request = DesignRequest.model_validate(payload["request"])
     document = Model.model_validate(payload["model"])
-    model = kept_model(document, plant)
+    model = extended_model(document, plant)
+    if request.noise_variance is not None:
+        model = replace(model, base=replace(model.base, noise_variance=request.noise_variance))
+    given = payload["experiments"]
+    with field_named({}, "/priorExperimentIds"), within_doubles():
+        experiments = kept_batches(given, context.arrays, True) if given else ()
+        require_matching(model.base, experiments)
     with field_named(FIELDS, "/operatingPoints"), within_doubles():
-        problem = stated_problem(request, model, document.covariance is not None)
+        problem = stated_problem(request, model, document.covariance is not None, experiments)
         found = design(problem, progress=_reporter(context, request.tolerance))
-    return TaskResult(_document(payload, model, problem, found))
+    return TaskResult(_document(payload, problem, found))
 
 
-def stated_problem(request: DesignRequest, model: LpvModel, covariance_known: bool) -> DesignProblem:
+def stated_problem(
+    request: DesignRequest, model: ExtendedModel, covariance_known: bool, experiments: tuple[Batch, ...] = ()
+) -> DesignProblem:
     """The problem of a request; raises MisuseError."""
-    searched = searched_model(request, model)
-    points = candidate_points(request, searched.dependence)
+    known = prior_information(model, covariance_known) if request.use_prior_information else None
+    base = searched_model(request, model.base)
+    searched = replace(model, base=base)
+    points = candidate_points(request, base.dependence)
     band = request.band
     return DesignProblem(
         model=searched,
         points=points,
-        targets=_fitting_targets(request, searched),
+        targets=_fitting_targets(request, base),
         family=request.spectrum_family.build(),
         samples=request.samples,
-        caps=energy_caps(request, points, searched.dependence),
-        prior_information=prior_information(model, covariance_known) if request.use_prior_information else None,
+        caps=energy_caps(request, points, base.dependence),
+        prior_information=known,
+        prior_experiments=experiments,
         band=None if band is None else (band.minimum_rad_per_second, band.maximum_rad_per_second),
-        sample_time=model.structure.sample_time or request.sample_time_seconds,
+        sample_time=base.structure.sample_time or request.sample_time_seconds,
         tolerance=request.tolerance,
         box=isinstance(request.operating_points, Box),
     )
@@ -79,7 +105,8 @@ def _fitting_targets(request: DesignRequest, model: LpvModel) -> tuple[Target, .
         target: Target = given.build()
         try:
             with within_doubles():
-                target.matrices(model)
+                if not isinstance(target, DecisionTarget):
+                    target.matrices(model)
         except MisuseError as error:
             raise MisuseError(str(error), f"/targets/{i}/{to_camel(error.field or '')}".rstrip("/")) from error
         targets.append(target)
@@ -94,7 +121,7 @@ def _reporter(context: TaskContext, tolerance: float) -> Callable[[int, float], 
     return report
 
 
-def _document(payload: dict[str, Any], model: LpvModel, problem: DesignProblem, found: Design) -> dict[str, Any]:
+def _document(payload: dict[str, Any], problem: DesignProblem, found: Design) -> dict[str, Any]:
     experiments = [
         DesignedExperimentDocument(
             operating_point=list(experiment.operating_point),
@@ -112,15 +139,22 @@ def _document(payload: dict[str, Any], model: LpvModel, problem: DesignProblem, 
         "sampleTimeSeconds": problem.step,
         "experiments": [experiment.as_json() for experiment in experiments],
         "totalEnergy": finite_or_none(found.total_energy),
+        "leastEnergy": finite_or_none(found.least_energy),
         "lowerBound": finite_or_none(found.lower_bound),
         "gap": finite_or_none(found.gap),
         "samples": found.samples,
         "requiredSamples": finite_or_none(found.required_samples),
-        "parameterNames": list(model.parameter_names),
+        "parameterNames": _names(problem.extended),
         "expectedCovariance": finite_list_or_none(found.expected_covariance),
         "expectedStandardDeviations": standard_deviations(found.expected_covariance),
         "binding": [_binding(problem, binding).as_json() for binding in found.binding],
+        "decisions": [decision_document(number, one).as_json() for number, one in found.decisions],
     }
+
+
+def _names(model: ExtendedModel) -> list[str]:
+    """θ_G, the parameters of the effects, θ_H."""
+    return [*joint_names(model), *model.base.parameter_names[model.base.plant_size :]]
 
 
 def _binding(problem: DesignProblem, binding: Binding) -> BindingDocument:

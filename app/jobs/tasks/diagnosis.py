@@ -3,6 +3,7 @@
 from typing import Any
 
 from app import __version__
+from app.conversion.deciding import deciding_design
 from app.conversion.diagnoses import findings
 from app.conversion.effects import chosen_effects, extended_model
 from app.conversion.experiments import kept_batches
@@ -32,6 +33,8 @@ def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
         effects = chosen_effects(request.effects, request.domain)
         found = diagnose(model, batches, effects, request.amplitude_degree, request.seed)
         document = findings(found, experiments)
+        decisive = deciding_design(found, experiments, payload["plant"]["id"], payload["model"]["id"])
+        document["decidingDesign"] = None if decisive is None else decisive.as_json()
     kept = {name: payload["request"][name] for name in KEPT}
     traced = {"modelId": payload["model"]["id"], "experimentIds": [one.id for one in experiments]}
     return TaskResult({"softwareVersion": __version__, **kept, **traced, **document})

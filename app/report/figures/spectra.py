@@ -12,6 +12,8 @@ from app.report.numbers import significant
 from app.report.style import colour, dash, new_figure
 from oed.design import DesignedExperiment
 from oed.spectra.fir import FirSpectrum
+from oed.spectra.lines import LineSpectrum
+from oed.spectra.multisines import MultisineSpectrum
 
 POINTS = 301
 
@@ -45,10 +47,17 @@ def _add_density(figure: go.Figure, spectrum: FirSpectrum, sample_time: float, n
 def _add_lines(
     figure: go.Figure, experiment: DesignedExperiment, samples: int, sample_time: float, name: str, i: int
 ) -> None:
-    indices, energies = experiment.spectrum.line_energies(samples, sample_time)
-    omega = 2 * np.pi * indices / (samples * sample_time)
+    period = _period(experiment, samples)
+    indices, energies = experiment.spectrum.line_energies(period, sample_time)
+    omega = 2 * np.pi * indices / (period * sample_time)
     error = {"type": "data", "symmetric": False, "array": 0 * energies, "arrayminus": energies, "width": 0}
     figure.add_scatter(x=omega, y=energies, name=name, mode="markers", error_y=error, marker={"color": colour(i)})
+
+
+def _period(experiment: DesignedExperiment, samples: int) -> int:
+    """The samples whose lines hold the spectrum: those of its own period, where it has one."""
+    spectrum = experiment.spectrum
+    return spectrum.samples if isinstance(spectrum, LineSpectrum | MultisineSpectrum) else samples
 
 
 def _table(experiments: Sequence[DesignedExperiment], samples: int, sample_time: float, axes: Axes) -> Table:
@@ -57,8 +66,9 @@ def _table(experiments: Sequence[DesignedExperiment], samples: int, sample_time:
     bands = [f"{low:.2f} to {high:.2f}" for low, high in pairwise(edges)]
     columns = []
     for experiment in experiments:
-        indices, energies = experiment.spectrum.line_energies(samples, sample_time)
-        band = np.minimum(20 * indices // samples, 9)
+        period = _period(experiment, samples)
+        indices, energies = experiment.spectrum.line_energies(period, sample_time)
+        band = np.minimum(20 * indices // period, 9)
         columns.append([significant(value) for value in np.bincount(band, energies, minlength=10)])
     rows = tuple((name, *values) for name, *values in zip(bands, *columns, strict=True))
     heads = tuple(axes.point(experiment.operating_point) for experiment in experiments)

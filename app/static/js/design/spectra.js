@@ -59,14 +59,14 @@ function drawMap(place, plant, experiments, onChoose) {
   });
 }
 
-const valueTitle = (experiments, plant) => labelled(experiments.every((one) => one.spectrum.kind === "lines") ? "energy of a line" : "energy density", energyUnit(plant));
+const valueTitle = (experiments, plant) => labelled(experiments.every((one) => one.spectrum.kind !== "fir") ? "energy of a line" : "energy density", energyUnit(plant));
 
 function drawCurves(place, plant, experiments) {
   const labels = experiments.map((one) => pointLabel(one.operatingPoint, plant.schedulingVariables));
   const trace = (one, i) => {
     const x = one.curve.frequenciesRadPerSecond.map(hertz);
     const y = one.curve.values;
-    if (one.spectrum.kind !== "lines") return { x, y, name: labels[i], mode: "lines", line: { dash: dash(i), width: 2.2 } };
+    if (one.spectrum.kind === "fir") return { x, y, name: labels[i], mode: "lines", line: { dash: dash(i), width: 2.2 } };
     return { x, y, name: labels[i], mode: "markers", marker: { symbol: symbol(i), size: 9 }, error_y: { type: "data", symmetric: false, array: y.map(() => 0), arrayminus: y, width: 0, thickness: 1.5 } };
   };
   return plot(place, {
