@@ -64,7 +64,7 @@ class StateSpaceStructure(CamelModel):
 
     order: StateOrder | None = Field(
         default=None,
-        description="number of states; null: chosen by the error on held-out lines, for models of one operating point",
+        description="number of states; null: chosen by the estimator, where it can",
     )
 
 

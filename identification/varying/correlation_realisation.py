@@ -1,6 +1,6 @@
 """Affine state-space models from one experiment with varying scheduling: correlation analysis, then Ho–Kalman."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated, ClassVar, Literal, Protocol
 
 import numpy as np
@@ -21,6 +21,7 @@ from identification.outcome import Outcome
 from identification.scheduling import with_constant
 from identification.sub_markov import BasisSelection, ExactSubMarkov, SubMarkovSource, SummedSubMarkov, every_word
 from identification.sub_markov_least_squares import WordRegression
+from identification.varying.affine_parameters import AffineSizes
 from identification.varying.output_error import output_error
 from identification.varying.progress import Progress, silent, within
 from identification.varying.records import VaryingRecord
@@ -28,6 +29,7 @@ from identification.varying.records import VaryingRecord
 NOISE_FREE = 1e-5
 BEYOND_BOUNDS = 1e100
 MOST_WORDS = 3000
+MOST_STATES = 10
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -97,6 +99,10 @@ class CorrelationRealisation:
     ) -> CorrelationEstimate:
         """The model of a record; without `order` n_x is taken from the singular values.
 
+        With a refinement orders from one up are tried instead, until the information criterion has risen twice:
+
+            BIC = N ln det Σ_w + k ln N,   k free parameters                            [Schwarz1978]
+
         The record starts from rest, or in any state when refined: then it costs the first model little.
         Input and scheduling may be anything for least squares; correlation needs both white (A2, A3), which is tested.
         Raises NotIdentifiableError when scheduling or input are not rich enough for the words, the record is too short,
@@ -105,6 +111,8 @@ class CorrelationRealisation:
         if order is not None and order < 1:
             raise RangeError(f"the order is {order}; it must be one or more", "order")
         self._require_few_words(record)
+        if order is None and self.refinement:
+            return self._of_best_order(record, progress)
         psi = with_constant(record.scheduling)
         tests = signal_tests(psi, record.input)
         white = self.parameters == "correlation" or (self.parameters == "automatic" and correlation_applies(tests))
@@ -138,6 +146,25 @@ class CorrelationRealisation:
             corrections=corrections,
             noise_covariance=noise,
         )
+
+    def _of_best_order(self, record: VaryingRecord, progress: Progress) -> CorrelationEstimate:
+        most = MOST_STATES if self.hankel == "full" else max(min(self.rows, self.columns) // 2, 1)
+        best: tuple[float, CorrelationEstimate] | None = None
+        for n in range(1, most + 1):
+            try:
+                found = self.estimate(record, n, progress=within(progress, (n - 1) / most, n / most))
+            except NotIdentifiableError:
+                if best is None:
+                    raise
+                break
+            score = _information(found, record)
+            if best is None or score < best[0]:
+                best = (score, found)
+            if n >= best[1].model.order + 2 or _noise_free(found, record):
+                break
+        assert best is not None, "the first order gives a model or raises"
+        advice = f"order {best[1].model.order} was chosen among 1 to {n}. {best[1].outcome.advice}".strip()
+        return replace(best[1], outcome=replace(best[1].outcome, advice=advice))
 
     def _require_few_words(self, record: VaryingRecord) -> None:
         k = record.scheduling.shape[1] + 1
@@ -230,6 +257,19 @@ def _errors(matrices: Matrices, record: VaryingRecord) -> FloatArray:
     """y − ŷ (N, n_y), infinite where it has grown beyond all bounds."""
     errors = record.output - simulate_matrices(matrices, record.input, record.scheduling)
     return np.where(abs(errors) < BEYOND_BOUNDS, errors, np.inf)
+
+
+def _information(found: CorrelationEstimate, record: VaryingRecord) -> float:
+    """BIC; infinite where there is no refined model."""
+    if found.noise_covariance is None:
+        return np.inf
+    size = float(np.linalg.slogdet(found.noise_covariance)[1])
+    return len(record) * size + AffineSizes.of(found.model).free * float(np.log(len(record)))
+
+
+def _noise_free(found: CorrelationEstimate, record: VaryingRecord) -> bool:
+    noise = np.inf if found.noise_covariance is None else float(np.trace(found.noise_covariance))
+    return noise < NOISE_FREE**2 * float(np.sum(np.mean(record.output**2, axis=0)))
 
 
 def _words_within(record: VaryingRecord, word_length: int) -> int:

@@ -145,8 +145,10 @@ def test_white_excitation_gives_a_model_with_several_inputs_and_outputs(api: Api
     assert experiment["understood"]["periodSamples"] is None
     assert not experiment["understood"]["varying"]["synchronised"]
     assert "does not repeat itself" in experiment["understood"]["varying"]["reason"]
-    found = identified(api, plant, records, {"kind": "correlation_realisation"})
+    free = {**varying.TURBINE["structure"], "order": None}
+    found = identified(api, plant, records, {"kind": "correlation_realisation"}, structure=free)
     assert found["outcome"]["status"] == "converged"
+    assert "order 2 was chosen" in found["outcome"]["advice"]
     assert (found["structure"]["order"], found["varying"]["warnings"], found["varying"]["steady"]) == (2, [], None)
     assert found["varying"]["noiseSpectrum"]["source"] == "residuals"
     assert np.allclose(np.diag(found["varying"]["noiseSpectrum"]["covariance"]), 0.02**2, rtol=0.15)
