@@ -21,8 +21,7 @@ page(async () => {
   const query = { plantId: context.plantId };
   const [found, models, experiments, comparisons] = await Promise.all([
     plant, list("/models", query), list("/experiments", query), list("/comparisons", query, 100)]);
-  const usable = experiments.filter(comparable);
-  drawForm(found, models, usable);
+  drawForm(found, models, experiments);
   drawEarlier(comparisons, indexed(models));
 });
 
@@ -33,14 +32,20 @@ function drawForm(found, models, experiments) {
   const known = indexed(models);
   const asked = new URLSearchParams(location.search).get("model");
   const model = select(models.map((one) => [one.id, datedTitle(one)]), known.has(asked) ? asked : models[0].id);
-  const fitted = () => fittedTo(known.get(model.value), known);
-  const notes = (one) => (fitted().has(one.id) ? "fitted" : "held out");
-  const choice = experimentChoice({ legend: "Experiments", experiments, variables: found.schedulingVariables, ticked: () => true, notes,
-    pointer: "/experimentIds", hint: "Experiments that no version of the model was fitted to are the ones that count." });
-  model.addEventListener("change", () => choice.update(notes, () => true));
+  const choices = h("div", {});
+  let choice = null;
+  const choose = () => {
+    const chosen = known.get(model.value);
+    const fitted = fittedTo(chosen, known);
+    choice = experimentChoice({ legend: "Experiments", experiments: experiments.filter((one) => comparable(one, chosen)), variables: found.schedulingVariables, ticked: () => true,
+      notes: (one) => (fitted.has(one.id) ? "fitted" : "held out"), pointer: "/experimentIds", hint: "Experiments that no version of the model was fitted to are the ones that count." });
+    replace(choices, choice.element);
+  };
+  model.addEventListener("change", choose);
+  choose();
   const mean = checkbox(true);
   const form = h("form", { novalidate: true, onsubmit: (event) => event.preventDefault() },
-    h("div", { class: "narrow" }, field("model", model, { pointer: "/modelId" })), choice.element,
+    h("div", { class: "narrow" }, field("model", model, { pointer: "/modelId" })), choices,
     field("compare the mean value of periodic records too", mean, { pointer: "/meanValue" }),
     h("p", { class: "actions" }, submitButton("Compare", () => submit(), { type: "submit" })));
   const submit = async () => {

@@ -3,16 +3,17 @@
 import { get, list } from "../js/api.js";
 import { CellView } from "../js/compare/cell_view.js";
 import { distributionPlot } from "../js/compare/distribution.js";
-import { misfitPlots, overallTable } from "../js/compare/lack_of_fit.js";
+import { disturbanceTable, misfitPlots, overallTable } from "../js/compare/lack_of_fit.js";
 import { DATA, ResidualMaps } from "../js/compare/residual_maps.js";
+import { timeResidualPlot } from "../js/compare/time_residuals.js";
 import { comparisonVerdict } from "../js/compare/verdict.js";
 import { context } from "../js/context.js";
 import { byId, h, message, replace } from "../js/dom.js";
 import { submitButton } from "../js/forms.js";
 import { runJob } from "../js/jobs.js";
-import { experimentTitle } from "../js/models/experiments.js";
+import { experimentTitle, pointText } from "../js/models/experiments.js";
 import { indexed, titleOf } from "../js/models/versions.js";
-import { moment, pointLabel, significant } from "../js/numbers.js";
+import { moment, significant } from "../js/numbers.js";
 import { showProblem } from "../js/problems.js";
 import { page } from "../js/ready.js";
 import { plant } from "../js/shell.js";
@@ -21,7 +22,7 @@ import { table } from "../js/tables.js";
 const at = (rest) => `/plants/${context.plantId}/${rest}`;
 
 page(async () => {
-  const [found, comparison, { rows }, experiments] = await Promise.all([
+  const [found, comparison, { rows, timeRows }, experiments] = await Promise.all([
     plant, get(`/comparisons/${context.comparisonId}`), get(`/comparisons/${context.comparisonId}/maps`), list("/experiments", { plantId: context.plantId })]);
   const model = await get(`/models/${comparison.modelId}`);
   const known = indexed(experiments);
@@ -29,12 +30,13 @@ page(async () => {
   const titles = new Map(experiments.map((one) => [one.id, experimentTitle(one, found.schedulingVariables)]));
   const view = new CellView(byId("cell"), { plant: found, model, comparison, experiments: known });
   const maps = new ResidualMaps(byId("maps"), rows, { variables: found.schedulingVariables, titles, onChoose: (cell) => view.show(cell) });
-  drawTests(comparison);
+  drawTests(comparison, titles, found);
   drawExperiments(comparison, titles, found.schedulingVariables);
   const distribution = h("div", {});
   const misfit = misfitPlots(byId("misfit"), comparison.parts, found.schedulingVariables);
   byId("misfit").append(distribution);
-  await Promise.all([misfit, rows.length ? distributionPlot(distribution, maps.parts) : null]);
+  const alongTime = timeRows.map((row) => timeResidualPlot(byId("misfit"), row, titles.get(row.experimentId) ?? "experiment"));
+  await Promise.all([misfit, ...alongTime, rows.length ? distributionPlot(distribution, maps.parts) : null]);
   const worst = maps.worst();
   if (worst) maps.choose(worst);
   await view.drawn;
@@ -58,14 +60,14 @@ function drawVerdict(comparison, model) {
       h("a", { class: "button quiet", href: at(`diagnose?comparison=${comparison.id}`) }, "With options")));
 }
 
-function drawTests({ parts }) {
+function drawTests({ parts }, titles, found) {
   const noiseKnown = parts.some((part) => part.noiseKnown);
-  replace(byId("tests"), noiseKnown ? overallTable(parts)
+  replace(byId("tests"), noiseKnown || parts.some((part) => part.simulationErrors.length) ? [overallTable(parts), disturbanceTable(parts, titles, found.output)]
     : message("warning", "The size of the noise is not known, as these data bring neither variances nor repeated periods; so nobody can say what is more than noise."));
 }
 
 function drawExperiments({ experiments }, titles, variables) {
   const rows = experiments.map((one) => [h("a", { href: at(`experiments/${one.experimentId}`) }, titles.get(one.experimentId) ?? one.experimentId),
-    pointLabel(one.operatingPoint, variables), DATA[one.data], one.fitPercent === null ? "–" : `${significant(one.fitPercent, 4)} %`]);
+    pointText(one.operatingPoint, variables), DATA[one.data], one.fitPercent === null ? "–" : `${significant(one.fitPercent, 4)} %`]);
   replace(byId("experiments"), table({ caption: "Fit: 100 (1 − ‖y − ŷ‖/‖y‖) at the excited lines", columns: ["experiment", "operating point", "data", "fit"], rows, textColumns: 3 }));
 }

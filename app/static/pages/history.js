@@ -1,14 +1,16 @@
 // The versions of a model: the falling error, every version with what can be done from it, two of them side by side.
 
-import { list } from "../js/api.js";
+import { download, list } from "../js/api.js";
 import { context } from "../js/context.js";
 import { byId, h, message, replace } from "../js/dom.js";
-import { field, select } from "../js/forms.js";
+import { field, select, submitButton } from "../js/forms.js";
 import { drawPair } from "../js/history/pair.js";
 import { broughtText, staircasePlot, stepsOf } from "../js/history/staircase.js";
+import { runJob } from "../js/jobs.js";
 import { effectText } from "../js/models/effects.js";
 import { datedTitle, effectsText, indexed, latest, lineage, titleOf } from "../js/models/versions.js";
 import { moment, percent } from "../js/numbers.js";
+import { showProblem } from "../js/problems.js";
 import { page } from "../js/ready.js";
 import { plant } from "../js/shell.js";
 import { table } from "../js/tables.js";
@@ -45,6 +47,16 @@ function drawHeadline(model, found, asked) {
     asked ? h("p", { class: "actions" }, h("a", { class: "button", href: at(`compare?model=${model.id}`) }, "Compare the new version"), h("a", { class: "button quiet", href: at(`models/${model.id}`) }, "Look at it")) : null);
 }
 
+async function downloadReport(model) {
+  try {
+    const { id } = await runJob(`/models/${model.id}/reports`, { name: "" }, byId("job"));
+    await download(`/reports/${id}/file`);
+  } catch (problem) {
+    if (!problem.title) throw problem;
+    showProblem(problem, { place: byId("job") });
+  }
+}
+
 function drawVersions(line, steps, ends) {
   const step = (model) => steps.find((one) => one.model === model);
   const rows = [...line].map((model, i) => [
@@ -55,7 +67,8 @@ function drawVersions(line, steps, ends) {
   const chooser = select(ends.map((one) => [one.id, datedTitle(one)]), line.at(-1).id);
   if (!ends.includes(line.at(-1))) chooser.prepend(h("option", { value: line.at(-1).id, selected: true }, datedTitle(line.at(-1))));
   chooser.addEventListener("change", () => { location.search = `?model=${chooser.value}`; });
+  const report = submitButton("Download the report of all this", () => downloadReport(line.at(-1)), { class: "quiet" });
   replace(byId("versions"),
     h("h2", {}, "Versions"), ends.length > 1 || !ends.includes(line.at(-1)) ? h("div", { class: "fields" }, field("line of versions that ends with", chooser)) : null,
-    table({ columns: ["version", "error, fitted", "error, held out", "undo", "effects", "made"], rows }));
+    table({ columns: ["version", "error, fitted", "error, held out", "undo", "effects", "made"], rows }), h("p", { class: "actions" }, report));
 }

@@ -27,7 +27,9 @@ export class CellView {
   }
 
   async #draw({ experimentId, frequency, counterpartId }, turn) {
-    const identifiers = [experimentId, counterpartId].filter(Boolean);
+    const experiment = this.experiments.get(experimentId);
+    if (experiment?.kind === "varyingRecord") return this.#along(experiment, frequency);
+    const identifiers = [experimentId, counterpartId].filter((id) => id && this.experiments.get(id)?.kind !== "varyingRecord");
     try {
       const found = await Promise.all(identifiers.map((id) => this.#fetched(id)));
       if (turn !== this.turn) return;
@@ -38,13 +40,19 @@ export class CellView {
       replace(this.place, h("h2", {}, `At ${significant(hertz(frequency), 4)} Hz`), h("div", { class: "columns" }, columns), this.#leftOut(found), record);
       const charts = await Promise.all(found.map((one, i) => this.#bode(columns[i], one, frequency)));
       if (charts.length > 1) linkAxes(charts, ["xaxis", "yaxis", "yaxis2"]);
-      const experiment = this.experiments.get(experimentId);
       if (experiment && turn === this.turn) await recordPlot(record, experiment, this.plant);
       this.place.style.minHeight = "";
     } catch (problem) {
       if (!problem.title) throw problem;
       if (turn === this.turn) replace(this.place, problemBox(problem));
     }
+  }
+
+  // A record along p(t) has no operating point, and so no frequency response.
+  #along(experiment, frequency) {
+    const record = h("div", {});
+    replace(this.place, h("h2", {}, `At ${significant(hertz(frequency), 4)} Hz`), h("p", { class: "hint" }, "The scheduling varied in this experiment, so that it shows no frequency response of one operating point."), record);
+    return recordPlot(record, experiment, this.plant);
   }
 
   // Responses, measured and of the model, kept for the next time.

@@ -2,12 +2,12 @@
 
 import { h } from "../dom.js";
 import { logAxis } from "../log_axis.js";
-import { hertz, pointLabel, probability, significant } from "../numbers.js";
+import { estimate, hertz, labelled, pointLabel, probability, significant } from "../numbers.js";
 import { faded, seriesColour, symbol } from "../palette.js";
 import { axis, plot } from "../plots.js";
 import { table } from "../tables.js";
 import { colour } from "../theme.js";
-import { DATA } from "./residual_maps.js";
+import { nameOf } from "./residual_maps.js";
 
 export const DOUBTFUL = 0.05;
 
@@ -25,7 +25,7 @@ export async function misfitPlots(place, parts, variables) {
   const several = variables.length > 1;
   const name = (point) => (several ? pointLabel(point, variables) : String(Number(point[0].toPrecision(4))));
   const charts = [
-    ["each operating point", several ? "" : pointTitle(variables[0]), (part) => part.byPoint.map((one) => [name(one.operatingPoint), one.test]), points.map(name)],
+    ["each operating point", several ? "" : labelled(variables[0].name, variables[0].unit), (part) => part.byPoint.map((one) => [name(one.operatingPoint), one.test]), points.map(name)],
     ["each band of frequencies", "frequency (Hz)", (part) => part.byBand.map((one) => [bandLabel(one), one.test])],
     ["each class of lines", "", (part) => part.byLineClass.map((one) => [one.name, one])],
   ];
@@ -34,8 +34,6 @@ export async function misfitPlots(place, parts, variables) {
   place.append(...holders);
   await Promise.all(drawn.map(([where, title, testsOf, order], i) => misfitPlot(holders[i], parts, { where, title, testsOf, order })));
 }
-
-const pointTitle = (variable) => (variable.unit ? `${variable.name} (${variable.unit})` : variable.name);
 
 function misfitPlot(place, parts, { where, title, testsOf, order }) {
   const given = parts.map((part) => [part, testsOf(part).filter(([, test]) => ratio(test) !== null)]);
@@ -48,7 +46,7 @@ function misfitPlot(place, parts, { where, title, testsOf, order }) {
       layout: { shapes: given.flatMap(([, tests], i) => tests.map((one) => range(one, categories, i))), xaxis: axis(title, { tickvals: categories.map((_, i) => i), ticktext: categories, range: [-0.5, categories.length - 0.5], showgrid: false }), yaxis: logAxis("χ² per degree", [0.5, 2, ...given.flatMap(([, tests]) => tests.map(([, test]) => ratio(test)))]) },
     }),
     table: () => ({ columns: ["where", "data", "χ²", "degrees of freedom", "χ² per degree", "p-value"], textColumns: 2,
-      rows: given.flatMap(([part, tests]) => tests.map(([label, test]) => [label, DATA[part.data], significant(test.statistic, 4), significant(test.degreesOfFreedom, 4), significant(ratio(test)), probability(test.pValue)])) }),
+      rows: given.flatMap(([part, tests]) => tests.map(([label, test]) => [label, nameOf(part), significant(test.statistic, 4), significant(test.degreesOfFreedom, 4), significant(ratio(test)), probability(test.pValue)])) }),
   });
 }
 
@@ -68,7 +66,7 @@ function limit(test, quantile) {
 
 function pointTrace(part, tests, categories, i) {
   return {
-    x: tests.map(([label]) => categories.indexOf(label) + shift(i)), y: tests.map(([, test]) => ratio(test)), mode: "markers", name: DATA[part.data],
+    x: tests.map(([label]) => categories.indexOf(label) + shift(i)), y: tests.map(([, test]) => ratio(test)), mode: "markers", name: nameOf(part),
     text: tests.map(([label, test]) => `${label}: p-value ${probability(test.pValue)}`), hovertemplate: "%{text}<br>%{y:.3g}",
     marker: { symbol: symbol(i), size: 10, color: seriesColour(i) },
   };
@@ -79,9 +77,18 @@ export function overallTable(parts) {
   const rows = parts.flatMap((part) => [
     ["is there anything but noise?", part.lackOfFit], ["is the dependence on the operating point wrong?", part.dependence],
     ["are the dynamics wrong even at one operating point?", part.dynamics],
+    ...part.simulationErrors.map((test) => [`is the simulation error suspicious? (${test.name})`, test]),
     ...part.betweenHarmonics.length ? [["is there a disturbance of its own frequency?", strongest(part.betweenHarmonics)]] : [],
-  ].filter(([, test]) => test).map(([question, test]) => [question, DATA[part.data], answer(test), significant(ratio(test)), probability(test.pValue)]));
+  ].filter(([, test]) => test).map(([question, test]) => [question, nameOf(part), answer(test), significant(ratio(test)), probability(test.pValue)]));
   return table({ caption: "What the tests say; a p-value below 0.05 comes up once in twenty even if nothing is wrong", columns: ["question", "data", "answer", "χ² per degree of freedom", "p-value"], rows, textColumns: 3 });
+}
+
+// Sine waves of their own frequency, in the experiments that have one.
+export function disturbanceTable(parts, titles, output) {
+  const found = parts.flatMap((part) => part.disturbances);
+  if (!found.length) return null;
+  const rows = found.map((one) => [titles.get(one.experimentId) ?? one.experimentId, estimate(hertz(one.frequencyRadPerSecond), hertz(one.frequencyDeviationRadPerSecond)), estimate(one.amplitude, one.amplitudeDeviation), probability(one.pValue)]);
+  return table({ caption: "The strongest disturbance of its own frequency, such as hum", columns: ["experiment", "frequency (Hz)", labelled("amplitude", output?.unit), "p-value"], rows });
 }
 
 // The smallest of several p-values, held against having looked so often.

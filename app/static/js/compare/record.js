@@ -5,9 +5,14 @@ import { h } from "../dom.js";
 import { labelled, significant } from "../numbers.js";
 import { dash, seriesColour } from "../palette.js";
 import { axis, plot, thinned } from "../plots.js";
+import { drawRecord } from "../record_plots.js";
 
 // Draw the record of an experiment of a plant; frequency responses have none, and say so.
 export async function recordPlot(place, experiment, plant) {
+  if (experiment.kind === "varyingRecord") {
+    const { inputs, outputs, sampleTimeSeconds, scheduling } = await get(`/experiments/${experiment.id}/data`);
+    return drawRecord(place, plant, inputs, outputs, sampleTimeSeconds, experiment.understood.periodSamples, scheduling);
+  }
   if (experiment.kind !== "timeRecord") {
     return place.append(h("p", { class: "hint" }, "This experiment is a frequency response; there is no record of it."));
   }

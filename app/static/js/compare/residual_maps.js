@@ -2,10 +2,11 @@
 
 import { h, replace } from "../dom.js";
 import { FieldMap } from "../map.js";
-import { byPoint } from "../models/experiments.js";
-import { counted, hertz, pointLabel, significant } from "../numbers.js";
+import { byPoint, pointText } from "../models/experiments.js";
+import { counted, hertz, significant } from "../numbers.js";
 
 export const DATA = { fitted: "fitted", heldOut: "held out" };
+export const nameOf = (part) => (part.scheduling === "varying" ? `${DATA[part.data]}, along p(t)` : DATA[part.data]);
 const CLASSES = { excited: "excited line", unexcitedOdd: "unexcited odd line", unexcitedEven: "unexcited even line" };
 const LEAST_TOP = 4;
 
@@ -40,7 +41,7 @@ export class ResidualMaps {
   counterpart(experimentId) {
     const [part, row] = this.#find(experimentId);
     const other = this.parts.find((one) => one !== part);
-    const distance = (one) => Math.hypot(...one.operatingPoint.map((value, i) => (value - row.operatingPoint[i]) / this.#width(i)));
+    const distance = (one) => Math.hypot(...(one.operatingPoint ?? []).map((value, i) => (value - (row.operatingPoint?.[i] ?? value)) / this.#width(i)));
     return other ? [...other.rows].sort((a, b) => distance(a) - distance(b))[0] : null;
   }
 
@@ -60,7 +61,7 @@ export class ResidualMaps {
 
   #describe(row, column) {
     const frequency = significant(hertz(row.frequenciesRadPerSecond[column]), 4);
-    const point = pointLabel(row.operatingPoint, this.variables);
+    const point = pointText(row.operatingPoint, this.variables);
     return `${point}, ${frequency} Hz: ${significant(sizes(row)[column])} times the noise, ${CLASSES[row.lineClasses[column]]} (${this.titles.get(row.experimentId) ?? "experiment"})`;
   }
 
@@ -105,7 +106,7 @@ function topOf(rows) {
 function labelsOf(rows, variables) {
   const seen = new Map();
   return rows.map((row) => {
-    const point = row.operatingPoint.map((value, i) => `${Number(value.toPrecision(4))} ${variables[i].unit}`.trim()).join(", ");
+    const point = row.operatingPoint?.map((value, i) => `${Number(value.toPrecision(4))} ${variables[i].unit}`.trim()).join(", ") ?? "varying";
     seen.set(point, (seen.get(point) ?? 0) + 1);
     return seen.get(point) > 1 ? `${point} · ${seen.get(point)}` : point;
   });

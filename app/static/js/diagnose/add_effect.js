@@ -14,7 +14,7 @@ export class AddEffect {
   constructor(jobPlace, { plant, diagnosis, comparison, model, models, experiments }) {
     Object.assign(this, { jobPlace, diagnosis, model });
     const variables = plant.schedulingVariables;
-    const usable = experiments.filter(comparable);
+    const usable = experiments.filter((one) => comparable(one, model));
     const fitted = new Set([...fittedTo(model, models), ...diagnosis.experimentIds]);
     const compared = comparison ? new Set(comparison.experiments.filter((one) => one.data === "heldOut").map((one) => one.experimentId)) : null;
     const heldOut = (one) => !fitted.has(one.id) && (compared === null || !compared.size || compared.has(one.id));

@@ -9,7 +9,8 @@ const ALIKE = 0.9;
 export function drawConfusability(place, diagnosis) {
   const count = diagnosis.ranking.length;
   if (count < 2) return replace(place, h("p", { class: "hint" }, "Fewer than two effects were judged."));
-  const first = Math.min(Math.max(diagnosis.ranking.filter((one) => one.evidence).length, 2), MOST, count);
+  const refitted = diagnosis.ranking.filter((one) => one.evidence).length;
+  const first = Math.min(refitted > 1 ? refitted : MOST, MOST, count);
   const holder = h("div", {}, matrix(diagnosis, first));
   const all = h("button", { type: "button", class: "quiet", "aria-pressed": "false", onclick: () => toggle() }, `All ${count}`);
   const toggle = () => {
@@ -19,14 +20,14 @@ export function drawConfusability(place, diagnosis) {
   };
   return replace(place,
     h("p", { class: "hint" }, "How alike the effects look in these experiments, once the parameters of the model have taken up what they can: 0 nothing in common, 1 cannot be told apart here."),
-    pairs(diagnosis), holder, count > first ? h("p", { class: "actions" }, all) : null);
+    pairs(diagnosis, first), holder, count > first ? h("p", { class: "actions" }, all) : null);
 }
 
 // In words: what is most alike to the best effects.
-function pairs({ ranking, confusability }) {
+function pairs({ ranking, confusability }, count) {
   const found = [];
-  for (let i = 0; i < Math.min(ranking.length, MOST); i += 1) {
-    for (let j = i + 1; j < Math.min(ranking.length, MOST); j += 1) if (confusability[i][j] >= ALIKE) found.push([i, j]);
+  for (let i = 0; i < count; i += 1) {
+    for (let j = i + 1; j < count; j += 1) if (confusability[i][j] >= ALIKE) found.push([i, j]);
   }
   if (!found.length) return h("p", {}, "None of the first effects look alike here.");
   return h("ul", {}, found.map(([i, j]) => h("li", {}, `${nameOf(ranking[i])} and ${nameOf(ranking[j])}: ${confusability[i][j].toFixed(2)}`)));

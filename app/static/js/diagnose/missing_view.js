@@ -3,8 +3,8 @@
 import { h, replace } from "../dom.js";
 import { field, select } from "../forms.js";
 import { logAxis } from "../log_axis.js";
-import { experimentTitle } from "../models/experiments.js";
-import { hertz, pointLabel, significant } from "../numbers.js";
+import { experimentTitle, pointText } from "../models/experiments.js";
+import { hertz, significant } from "../numbers.js";
 import { dash, faded, seriesColour } from "../palette.js";
 import { axis, plot } from "../plots.js";
 import { colour } from "../theme.js";
@@ -16,7 +16,7 @@ export class MissingView {
     Object.assign(this, { place, plant });
     this.rows = diagnosis.missing.filter((one) => one.frequenciesRadPerSecond.some((omega) => omega > 0));
     this.titles = new Map(diagnosis.ranking.map((one) => [one.kind, one.title]));
-    const label = (row) => (experiments.has(row.experimentId) ? experimentTitle(experiments.get(row.experimentId), plant.schedulingVariables) : pointLabel(row.operatingPoint, plant.schedulingVariables));
+    const label = (row) => (experiments.has(row.experimentId) ? experimentTitle(experiments.get(row.experimentId), plant.schedulingVariables) : pointText(row.operatingPoint, plant.schedulingVariables));
     this.chooser = select(this.rows.map((row, i) => [i, label(row)]), String(worst(this.rows)));
     this.chooser.addEventListener("change", () => this.#draw());
     this.inner = h("div", {});

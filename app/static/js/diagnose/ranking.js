@@ -11,8 +11,7 @@ export function drawRanking(place, diagnosis, { plant, add }) {
   const refitted = diagnosis.ranking.filter((one) => one.evidence);
   replace(place,
     refitted.length ? h("p", { class: "hint" }, "Each was fitted together with the parameters of the model. The weight says how the evidence divides among them and the model as it is.") : h("p", {}, "No effect stands out."),
-    h("ol", { class: "effects" }, refitted.map((one) => entry(one, { plant, add }))),
-    add.panel,
+    refitted.length ? [h("ol", { class: "effects" }, refitted.map((one) => entry(one, { plant, add }))), add.panel] : null,
     tableBehind(() => ({ columns: ["effect", "acts on", "score", "p-value", "adjusted p-value"], textColumns: 2,
       rows: diagnosis.ranking.map((one) => [nameOf(one), one.place, significant(one.score), probability(one.pValue), probability(one.adjustedPValue)]) }), `All ${diagnosis.ranking.length} effects that were judged`));
 }

@@ -4,13 +4,19 @@ import { pointLabel } from "../numbers.js";
 
 // What to call an experiment.
 export function experimentTitle(experiment, variables) {
-  const point = experiment.operatingPoint ? pointLabel(experiment.operatingPoint, variables) : "varying";
-  return experiment.name || point;
+  return experiment.name || pointText(experiment.operatingPoint, variables);
 }
 
-// One input, one output, and an operating point that was held.
-export function comparable(experiment) {
-  return ["timeRecord", "frequencyResponse"].includes(experiment.kind) && experiment.operatingPoint !== null;
+// What a model can be held against: one input and output at an operating point, for models along p(t) records along it.
+export function comparable(experiment, model) {
+  if (experiment.kind === "varyingRecord") return model.varying !== null;
+  const several = model.stateSpace && (model.stateSpace.inputCount > 1 || model.stateSpace.outputCount > 1);
+  return ["timeRecord", "frequencyResponse"].includes(experiment.kind) && !several;
+}
+
+// An operating point in words, also where it was not held.
+export function pointText(operatingPoint, variables) {
+  return operatingPoint ? pointLabel(operatingPoint, variables) : "varying";
 }
 
 // By operating point, then in the order in which they came in.
