@@ -16,14 +16,17 @@ export function significant(value, digits = 3) {
 // The same with a unit, which may be "".
 export function quantity(value, unit, digits = 3) {
   const text = significant(value, digits);
-  return text === UNKNOWN || !unit ? text : `${text}\u00a0${unit}`;
+  return text === UNKNOWN || !named(unit) ? text : `${text}\u00a0${unit}`;
 }
+
+// Whether a unit is more than that of a mere number.
+const named = (unit) => Boolean(unit) && unit !== "1";
 
 // A number that was stated, with the digits that it was stated with; with its unit.
 export function exact(value, unit = "") {
   if (value === null || value === undefined) return UNKNOWN;
   const text = /e/.test(String(Number(value.toPrecision(6)))) ? significant(value, 4) : String(Number(value.toPrecision(6)));
-  return `${text.replace("-", "−")}${unit ? `\u00a0${unit}` : ""}`;
+  return `${text.replace("-", "−")}${named(unit) ? `\u00a0${unit}` : ""}`;
 }
 
 // A size in memory.
@@ -73,7 +76,7 @@ export function moment(text) {
 
 // A name with its unit in brackets, for axes and heads.
 export function labelled(name, unit) {
-  return unit ? `${name} (${unit})` : name;
+  return named(unit) ? `${name} (${unit})` : name;
 }
 
 // Of some things: 1 job, 2 jobs.

@@ -2,7 +2,7 @@
 
 import { context } from "../context.js";
 import { h } from "../dom.js";
-import { moment } from "../numbers.js";
+import { counted, moment } from "../numbers.js";
 import { words } from "../plugin_field.js";
 import { tableBehind, table } from "../tables.js";
 import { experimentTitle } from "./experiments.js";
@@ -27,7 +27,7 @@ export function provenance(model, { plant, models, experiments }) {
     ? h("a", { href: at(`experiments/${id}`) }, experimentTitle(experiments.get(id), plant.schedulingVariables)) : h("code", {}, id)]);
   return [
     table({ columns: ["property", "value"], rows, textColumns: 2 }),
-    used.length ? tableBehind(() => ({ columns: ["experiment"], rows: used }), `Its ${used.length} experiments`) : null,
+    used.length ? tableBehind(() => ({ columns: ["experiment"], rows: used }), `Its ${counted(used.length, "experiment")}`) : null,
   ];
 }
 
