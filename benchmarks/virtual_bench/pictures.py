@@ -10,7 +10,7 @@ import plotly.graph_objects as go
 from app.report.document import Fact, Plot, Report, Section, Table
 from app.report.numbers import significant
 from app.report.style import NEUTRAL, colour, new_figure
-from benchmarks.virtual_bench import alarms, hits
+from benchmarks.virtual_bench import alarms, hits, unknown
 
 Runs = list[dict[str, Any]]
 COMMAND = "python -m benchmarks.diagnosis_study"
@@ -114,9 +114,13 @@ def _measures(found: dict[str, Any]) -> Table:
         if isinstance(value, dict):
             text = _rate(value) if "percent" in value else ", ".join(f"{k}: {significant(v)}" for k, v in value.items())
         else:
-            text = significant(value) if isinstance(value, (int, float)) else "; ".join(value) or "none"
+            text = str(value) if isinstance(value, int) else _text(value)
         rows.append((name, text))
     return Table(("figure", "value"), tuple(rows), "Rates with 99 % intervals.", text_columns=2)
+
+
+def _text(value: float | list[str]) -> str:
+    return significant(value) if isinstance(value, float) else "; ".join(value) or "none"
 
 
 def _confusion(runs: Runs) -> Plot:
@@ -173,7 +177,7 @@ def _errors(runs: Runs) -> Plot:
     for i, name in enumerate(("error before", "error after", "error of the true structure")):
         own = [[run[name] for run in hits.by_kind(runs, kind) if name in run] for kind in kinds]
         values = [100 * float(np.median(one)) if one else None for one in own]
-        symbol = {"color": colour(i), "symbol": ("circle", "square", "x")[i], "size": 8}
+        symbol = {"color": colour(i), "symbol": ("circle", "square", "circle-open")[i], "size": (8, 7, 13)[i]}
         figure.add_scatter(x=values, y=kinds, mode="markers", marker=symbol, name=name.removeprefix("error "))
         rows.append(values)
     figure.update_xaxes(type="log", title="held-out error (% of the output)")
@@ -234,7 +238,28 @@ def unknown_page(runs: Runs, summary: dict[str, Any]) -> Report:
     shape = Plot(figure, caption, Table(("removed", "what was tried instead"), added, text_columns=2))
     facts = (Fact(_rate(summary["all"]["not in the library"]), "called “not in the library”"),)
     introduction = f"{COMMAND} unknown --runs {len(runs) // len(kinds)}"
-    return Report("Effects that the library does not hold", introduction, facts, (Section("", blocks=(bars, shape)),))
+    shown = Section("The smooth picture in one run", blocks=tuple(_missing(kind) for kind in kinds))
+    sections = (Section("What is said", blocks=(bars,)), Section("Its shape", blocks=(shape,)), shown)
+    return Report("Effects that the library does not hold", introduction, facts, sections)
+
+
+def _missing(kind: str) -> Plot:
+    points, frequencies, found, true = unknown.pictures(kind)
+    figure = new_figure(("found", "true"), height=460)
+    names = [f"p = {p:.2g}, {'low' if i % 2 else 'high'}" for i, p in enumerate(points)]
+    for row, values in enumerate((found, true), 1):
+        scale = {"zmin": 0, "zmax": float(true.max()), "colorscale": "Viridis", "showscale": row == 1}
+        figure.add_heatmap(x=frequencies, y=names, z=values, row=row, col=1, **scale)
+    figure.update_xaxes(type="log")
+    figure.update_xaxes(title="frequency (rad/s)", row=2)
+    columns = np.linspace(0, len(frequencies) - 1, 7).astype(int)
+    heads = ("record", *(f"{frequencies[i]:.3g} rad/s" for i in columns))
+    rows = (
+        (name, *(f"{significant(f[i], 2)} / {significant(t[i], 2)}" for i in columns))
+        for name, f, t in zip(names, found, true, strict=True)
+    )
+    caption = f"|δG| that is missing with {kind} hidden, by operating point and level; the table has found / true."
+    return Plot(figure, caption, Table(heads, tuple(rows)))
 
 
 PAGES: dict[str, Callable[[Runs, dict[str, Any]], Report]] = {

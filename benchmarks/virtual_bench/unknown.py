@@ -10,9 +10,10 @@ from benchmarks.virtual_bench.study import MODEL, design, effects, measured, ste
 from identification.arrays import FloatArray
 from identification.comparison.batch import EXCITED, Batch
 from identification.comparison.compare import bands
+from identification.diagnosis.diagnose import rows_of
 from identification.diagnosis.missing import missing_response
 from identification.diagnosis.staircase import conclusion, staircase
-from identification.extension.fit import Fit
+from identification.extension.fit import Fit, fit
 
 SHARE = 0.03
 REMOVED = ("cubic_stiffness", "coulomb_friction", "resonance", "quadratic_sensor", "cubic_dependence")
@@ -39,6 +40,16 @@ def one(task: tuple[str, int]) -> dict[str, Any]:
         "added": [one.effect.kind for one in steps[-1].model.effects],
         **correlations(kind, first.base),
     }
+
+
+def pictures(kind: str, seed: int = 0) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Operating points (M,), frequencies (F,), and |δG| (M, F) that is missing, as it is found and as it is."""
+    batches = measured((kind,), SHARE, np.random.default_rng(seed))
+    base = fit(MODEL, rows_of(MODEL, batches))
+    seen, true = (missing_response(found) for found in (base, without_noise(kind, base)))
+    points = np.concatenate([one.points[:, 0] for one in seen])
+    found, wanted = (abs(np.concatenate([one.response for one in each])) for each in (seen, true))
+    return points, seen[0].frequencies, found, wanted
 
 
 def correlations(kind: str, base: Fit) -> dict[str, float]:

@@ -5,13 +5,18 @@ import pytest
 
 from identification.comparison.gather import gather
 from identification.diagnosis.diagnose import diagnose
+from identification.diagnosis.evidence import refit_short_list
 from identification.diagnosis.missing import missing_response
 from identification.diagnosis.staircase import conclusion, staircase
+from identification.effects.coulomb_friction import CoulombFriction
 from identification.effects.delay import Delay
+from identification.effects.hysteresis import Hysteresis
 from identification.effects.inductance import Inductance
 from identification.effects.lag import Lag
 from identification.effects.library import library
 from identification.effects.quadratic_sensor import QuadraticSensor
+from identification.extension.fit import fit
+from identification.extension.rows import Rows
 from identification.signals import FrequencyResponse, TimeRecord
 from tests.support.oscillators import (
     MODEL,
@@ -65,6 +70,31 @@ def test_nothing_is_announced_when_nothing_is_missing():
     quiet = next(one for one in found if not one.announced)
     assert quiet.verdict == "nothing missing"
     assert quiet.best is None
+
+
+def test_coulomb_friction_without_its_kind_is_not_called_hysteresis():
+    """Which it is when the travel may shrink to nothing; with the kind it is named."""
+    data = with_force(lambda x, v: 0.6 * np.tanh(v / 0.002))
+    assert kinds(diagnose(MODEL, data, (CoulombFriction(), Hysteresis())).announced) == ["coulomb_friction"]
+    found = diagnose(MODEL, data, (Hysteresis(),))
+    assert found.announced == ()
+    assert found.verdict == "not in the library"
+
+
+def test_lack_of_fit_has_what_the_fitted_parameters_leave():
+    data = batches(1)
+    found = diagnose(MODEL, data, (Delay(),))
+    assert found.lack_of_fit.degrees_of_freedom == sum(batch.row_count for batch in data) - 4
+
+
+def test_an_effect_that_explains_no_more_than_its_parameter_costs_is_not_announced():
+    """Adding noise-sized effects must not pay: BIC of the model as it is stays lowest."""
+    data = batches(0)
+    found = diagnose(MODEL, data, (QuadraticSensor(), Delay()))
+    base = fit(MODEL, Rows(data))
+    evidence = refit_short_list(base, found.scores)
+    assert all(one.bic > base.cost for one in evidence)
+    assert all(one.explained < 6 for one in evidence)
 
 
 def test_delay_and_lag_are_told_apart_only_by_the_edge_of_the_band():

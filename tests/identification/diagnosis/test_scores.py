@@ -1,8 +1,10 @@
 """The score tests: uniform under the null, projected, one-sided, with the noise's own degrees of freedom."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
-from scipy.stats import kstest
+from scipy.stats import chi2, kstest
 
 from identification.diagnosis.scores import _tail, score_tests
 from identification.diagnosis.signatures import candidates, tangent_space
@@ -76,6 +78,15 @@ def test_the_amplitude_is_read_off_the_score():
     found = base(extra=lambda w: np.exp(-2e-3j * w))
     score = scored(found, (Delay(),))["delay"]
     assert score.signature.amplitudes(found.residual) == pytest.approx([2e-3], rel=0.15)
+
+
+@pytest.mark.parametrize("raw", [np.inf, 6.0])
+def test_the_p_of_one_two_sided_effect_is_that_of_its_statistic(raw):
+    """χ² with one degree of freedom where the noise is known, hardly more than that where it is estimated."""
+    (batch,) = batches(3)
+    found = fit(MODEL, Rows((replace(batch, raw_freedom=raw, freedom=90 * raw / 6),)))
+    score = scored(found, (QuadraticSensor(),))["quadratic_sensor"]
+    assert score.p_value == pytest.approx(chi2.sf(score.statistic, 1), abs=0.04)
 
 
 def test_the_whole_library_can_be_scored():
