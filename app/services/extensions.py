@@ -58,8 +58,7 @@ def payload(
 ) -> dict[str, Any]:
     """What the task gets; raises UnprocessableError when the effect or the experiments do not fit the model."""
     check_effect(request.effect, [*experiments, *held_out], "/effect")
-    if model.varying is not None and isinstance(effect_of(request.effect), Coefficient):
-        raise UnprocessableError.at("/effect", OF_COEFFICIENTS)
+    check_has_coefficients(model, request.effect, "/effect")
     check_measured(model, experiments, held_out, fitted)
     quantity = chosen_quantity(request.effect, request.quantity, [*experiments, *held_out])
     return {
@@ -70,6 +69,12 @@ def payload(
         "heldOut": payload_of(held_out),
         "quantity": quantity,
     }
+
+
+def check_has_coefficients(model: Model, kind: str, pointer: str) -> None:
+    """Raises UnprocessableError for an effect on coefficients that a model from varying scheduling does not have."""
+    if model.varying is not None and isinstance(effect_of(kind), Coefficient):
+        raise UnprocessableError.at(pointer, OF_COEFFICIENTS)
 
 
 def check_measured(model: Model, experiments: list[Measured], held_out: list[Measured], fitted: Set[str]) -> None:

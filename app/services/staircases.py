@@ -9,7 +9,7 @@ from app.schemas.plants import Plant
 from app.schemas.staircases import Staircase, StaircaseList, StaircaseRequest
 from app.services.diagnoses import check_effects
 from app.services.documents import fields, items
-from app.services.extensions import HELD_OUT, check_measured
+from app.services.extensions import HELD_OUT, check_has_coefficients, check_measured
 from app.services.jobs import fingerprint
 from app.services.measured import Measured, fitted_experiments, measured_of_plant, payload_of
 from app.services.models import model_of
@@ -28,6 +28,8 @@ def submit(container: Container, model_id: str, request: StaircaseRequest, key: 
     held_out = measured_of_plant(resources, request.held_out_experiment_ids, plant.id, HELD_OUT)
     check_measured(model, experiments, held_out, fitted_experiments(resources, model))
     check_effects(request.effects or [], [*experiments, *held_out])
+    for i, kind in enumerate(request.effects or []):
+        check_has_coefficients(model, kind, f"/effects/{i}")
     mark = fingerprint("createStaircase", model_id, request.model_dump(mode="json"))
     task = _payload(plant, model, request, experiments, held_out)
     return container.ledger.submit("staircase", task, KIND, plant.id, key, mark)

@@ -13,6 +13,7 @@ from identification.errors import MisuseError
 from identification.extension.model import ExtendedModel, PlacedEffect
 from identification.models import LpvModel, RationalStructure
 from identification.outcome import Outcome
+from identification.places.linear import Coefficient
 from identification.scheduling import ParameterDependence, ProductBasis
 from identification.varying.affine_parameters import AffineSizes
 
@@ -164,8 +165,11 @@ def frozen(
     """The model of an estimate with one input and output, its scheduling held still, its parameters δ, θ = Q δ.
 
     `joint`: the covariance of θ and the parameters of the `effects` together, None when it is not known. Raises
-    MisuseError for several inputs or outputs, or without declared scheduling variables.
+    MisuseError for several inputs or outputs, without declared scheduling variables, or for effects on coefficients,
+    which mean something else in every state basis.
     """
+    if any(isinstance(one.effect, Coefficient) for one in effects):
+        raise MisuseError("effects on the coefficients of a state-space model depend on its state basis", "effects")
     model = estimate.model
     if model.n_inputs != 1 or model.n_outputs != 1 or not model.variables:
         raise MisuseError(

@@ -166,6 +166,15 @@ def test_what_still_experiments_lack_is_diagnosed_and_added(
     assert pointers(api.refused(f"/models/{grown['id']}/simulations", {"excitation": given})) == ["/modelId"]
 
 
+def test_a_staircase_climbs_from_a_model_of_varying_scheduling(api: Api, model: Json, late: list[str]) -> None:
+    request = {"experimentIds": late[:5], "heldOutExperimentIds": late[5:], "effects": ["delay", "lag"]}
+    found = api.made(f"/models/{model['id']}/staircases", request)
+    assert [step["added"] for step in found["steps"]] == [None, "delay"]
+    assert api.get(f"/models/{found['steps'][1]['modelId']}")["effects"][0]["kind"] == "delay"
+    asked = {**request, "effects": ["delay", "cubic_dependence"]}
+    assert pointers(api.refused(f"/models/{model['id']}/staircases", asked)) == ["/effects/1"]
+
+
 def test_what_cannot_be_compared_or_diagnosed_says_why(
     api: Api, plant: Json, model: Json, records: list[str], still: list[str]
 ) -> None:

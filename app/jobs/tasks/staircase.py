@@ -20,6 +20,8 @@ from app.schemas.staircases import StaircaseRequest, StaircaseStep
 from app.store.identifiers import new_identifier
 from identification.diagnosis.staircase import Step, conclusion, staircase
 from identification.extension.model import require_matching
+from identification.places.linear import Coefficient
+from identification.places.place import Effect
 
 KIND = "staircase"
 FIELDS = {"effects": "/effects", "model": "/experimentIds"}
@@ -47,7 +49,7 @@ def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
             model,
             batches,
             held_out,
-            chosen_effects(request.effects, request.domain),
+            _effects(request, first),
             request.amplitude_degree,
             request.largest,
             request.seed,
@@ -68,6 +70,12 @@ def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
         ],
     }
     return TaskResult(document, beside=(*versions, *diagnoses))
+
+
+def _effects(request: StaircaseRequest, first: Model) -> tuple[Effect, ...]:
+    """The effects asked for, without those on coefficients where these depend on the state basis."""
+    asked = chosen_effects(request.effects, request.domain)
+    return asked if first.varying is None else tuple(one for one in asked if not isinstance(one, Coefficient))
 
 
 def _diagnoses(
