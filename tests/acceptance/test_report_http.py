@@ -6,6 +6,7 @@ import re
 import pytest
 
 from tests.acceptance.test_example import IDENTIFICATION
+from tests.support import responses, varying
 from tests.support.api import Api, Json
 from tests.support.server import Server
 
@@ -58,3 +59,22 @@ def test_the_file_is_saved_not_shown(api: Api, chain: dict[str, Json]) -> None:
 def test_there_is_no_report_of_a_model_that_is_not_there(api: Api) -> None:
     assert api.http.post("/models/nothing/reports", json={}).status_code == 404
     assert api.http.get("/reports/nothing/file").status_code == 404
+
+
+def test_models_in_state_space_and_from_varying_scheduling_have_reports_too(api: Api) -> None:
+    plant = api.post("/plants", responses.PLANT)
+    data = [responses.body(plant, responses.measured(point, 0.01)) for point in responses.POINTS]
+    experiments = [api.made("/experiments", body)["id"] for body in data]
+    estimator = {"parametricEstimator": {"kind": "parametric_subspace"}}
+    body = {"plantId": plant["id"], "experimentIds": experiments, **estimator}
+    model = api.made("/models/state-space", body)
+    assert api.made(f"/models/{model['id']}/reports", {})["experimentIds"] == experiments
+
+    plant = api.post("/plants", varying.TURBINE)
+    record = api.made("/experiments", varying.body(plant, varying.turbine(11)))["id"]
+    still = api.made("/experiments", {**varying.still(0.0, 3), "plantId": plant["id"]})["id"]
+    body = {"plantId": plant["id"], "experimentId": record, "estimator": {"kind": "periodic_likelihood"}}
+    model = api.made("/models/varying", body)
+    api.made("/comparisons", {"modelId": model["id"], "experimentIds": [record, still]})
+    report = api.made(f"/models/{model['id']}/reports", {})
+    assert b"Version 1 against measurements" in api.download(f"/reports/{report['id']}/file")

@@ -68,8 +68,13 @@ def known(fuzzed: Server) -> dict[str, str]:
     covariance = (np.eye(len(THETA)) * 1e-6).tolist()
     stated = {"plantId": plant["id"], "theta": THETA, "noiseVariance": 0.5, "covariance": covariance}
     comparison = api.made("/comparisons", {**compared, "modelId": api.post("/models/stated", stated)["id"]})
+    example = api.made("/examples", {"hiddenEffect": "none"})
+    report = api.made(f"/models/{model['id']}/reports", {})
+    asked = {"experimentIds": compared["experimentIds"], "effects": ["delay"]}
+    staircase = api.made(f"/models/{model['id']}/staircases", asked)
     made = {"plantId": plant, "modelId": model, "experimentId": experiment, "signalsId": signals}
     made |= {"comparisonId": comparison, "diagnosisId": diagnosis}
+    made |= {"exampleId": example, "reportId": report, "staircaseId": staircase}
     return {name: document["id"] for name, document in made.items()} | {"designId": design, "jobId": job["id"]}
 
 
