@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from pydantic import Field
 
 from app.schemas.common import CamelModel, Double, Integer, Timestamp
+from app.schemas.experiments import Identifier
 from app.schemas.plants import Text
 from app.virtual_plant.hidden import EFFECTS
 
@@ -44,6 +45,28 @@ class Example(CamelModel):
     noise_standard_deviation: Double = Field(description="of the output, in its unit")
     seed: Integer
     hidden: HiddenEffectDocument | None = Field(description="what a diagnosis should find; null: nothing is hidden")
+
+
+class MeasurementRequest(CamelModel):
+    """Which signals to play on the simulated plant."""
+
+    signals_id: Identifier = Field(description="signals of a design for this plant")
+    seed: Seed = Field(default=0, description="of the noise")
+
+
+class SimulatedMeasurement(CamelModel):
+    """Designed signals played on the simulated plant, one experiment each."""
+
+    id: str
+    created_at: Timestamp
+    software_version: str
+    job_id: str | None
+    plant_id: str
+    example_id: str
+    signals_id: str
+    design_id: str
+    experiment_ids: list[str]
+    seed: Integer
 
 
 class ExampleList(CamelModel):

@@ -51,11 +51,17 @@ def first_campaign(stage: Stage, generator: np.random.Generator) -> Campaign:
 
 
 def measured(
-    stage: Stage, positions: FloatArray, forces: FloatArray, periods: int, generator: np.random.Generator
+    stage: Stage,
+    positions: FloatArray,
+    forces: FloatArray,
+    periods: int,
+    generator: np.random.Generator,
+    sample_time: float = SAMPLE_TIME,
 ) -> tuple[TimeRecord, ...]:
     """The records of one period of forces (M, L), played `periods` times at each position (M,)."""
-    deflections = stage.measure(positions, forces, SAMPLE_TIME, periods, generator)
+    deflections = stage.measure(positions, forces, sample_time, periods, generator)
+    period = forces.shape[1] if periods > 1 else None
     return tuple(
-        TimeRecord(np.tile(u, periods), y, SAMPLE_TIME, (float(s),), forces.shape[1])
+        TimeRecord(np.tile(u, periods), y, sample_time, (float(s),), period)
         for s, u, y in zip(positions, forces, deflections, strict=True)
     )

@@ -13,6 +13,7 @@ DAMPING = 0.02  # N/(mm/s)
 STIFFNESS, SOFTENING = 9.0, 8.0  # N/mm, and N/mm less for each m
 LENGTH = 0.6  # m
 MILLIMETRES = 1e3
+LONGEST_SAMPLE_TIME = 0.01  # seconds; with longer steps the integration is not exact any more
 RUN_IN = 2.5  # seconds until the start is forgotten
 
 

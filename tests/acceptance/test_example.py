@@ -58,3 +58,43 @@ def test_the_seed_decides_what_is_hidden(api: Api) -> None:
 def test_what_cannot_be_hidden_is_refused(api: Api) -> None:
     assert pointers(api.refused("/examples", {"hiddenEffect": "goblin"})) == ["/hiddenEffect"]
     assert pointers(api.refused("/examples", {"seed": -1})) == ["/seed"]
+
+
+@pytest.fixture(scope="module")
+def signals(api: Api, example: Json) -> Json:
+    plant = example["plantId"]
+    experiments = example["experimentIds"][:6]
+    model = api.made("/models", {"plantId": plant, "experimentIds": experiments, **IDENTIFICATION})
+    design = api.made(
+        "/designs",
+        {
+            "plantId": plant,
+            "modelId": model["id"],
+            "operatingPoints": {"kind": "gridAxes", "axes": [{"minimum": 0.0, "maximum": 0.6, "count": 7}]},
+            "targets": [{"kind": "parameter_deviation", "standardDeviations": [1e-4, 2e-4, 5e-4, 8e-5]}],
+            "spectrumFamily": {"kind": "lines", "samples": 512},
+            "samples": 2048,
+            "sampleTimeSeconds": 0.008,
+            "band": {"minimumRadPerSecond": 5.0, "maximumRadPerSecond": 160.0},
+        },
+    )
+    return api.made(f"/designs/{design['id']}/signals", {"samples": 512, "periods": 4})
+
+
+def test_designed_signals_are_played_on_it(api: Api, example: Json, signals: Json) -> None:
+    body = {"signalsId": signals["id"], "seed": 3}
+    found = api.made(f"/examples/{example['id']}/measurements", body)
+    assert found["designId"] == signals["designId"]
+    for name, signal in zip(found["experimentIds"], signals["signals"], strict=True):
+        experiment = api.get(f"/experiments/{name}")
+        assert experiment["designId"] == signals["designId"]
+        assert experiment["operatingPoint"] == signal["operatingPoint"]
+        assert experiment["understood"]["periods"] == 4
+        played = api.get(f"/experiments/{name}/data")["input"]
+        assert sum(value**2 for value in played) == pytest.approx(signal["energy"])
+
+
+def test_signals_of_another_plant_are_refused(api: Api, signals: Json) -> None:
+    other = api.made("/examples", {"hiddenEffect": "none", "seed": 9})["id"]
+    assert pointers(api.refused(f"/examples/{other}/measurements", {"signalsId": signals["id"]})) == ["/signalsId"]
+    assert pointers(api.refused(f"/examples/{other}/measurements", {"signalsId": "nothing"})) == ["/signalsId"]

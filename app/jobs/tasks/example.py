@@ -48,9 +48,11 @@ def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
     return TaskResult(document, beside=beside)
 
 
-def experiments(records: Sequence[TimeRecord], plant_id: str, prefix: str, context: TaskContext) -> list[Made]:
+def experiments(
+    records: Sequence[TimeRecord], plant_id: str, prefix: str, context: TaskContext, design_id: str | None = None
+) -> list[Made]:
     """The records as experiments of the plant, looked at like any others."""
-    return [_experiment(record, plant_id, prefix, context) for record in records]
+    return [_experiment(record, plant_id, prefix, context, design_id) for record in records]
 
 
 def _hidden(choice: str, generator: np.random.Generator) -> Hidden:
@@ -65,14 +67,14 @@ def _revealed(hidden: Hidden) -> dict[str, Any] | None:
     return HiddenEffectDocument(kind=hidden.kind, amplitude=hidden.amplitude, unit=hidden.unit).as_json()
 
 
-def _experiment(record: TimeRecord, plant_id: str, prefix: str, context: TaskContext) -> Made:
+def _experiment(record: TimeRecord, plant_id: str, prefix: str, context: TaskContext, design_id: str | None) -> Made:
     level = float(np.sqrt(np.mean(record.input**2)))
     stated = {
         "plantId": plant_id,
         "name": f"{prefix}{record.operating_point[0]:g} m, {level:.3g} N",
         "description": "",
         "operatingPoint": list(record.operating_point),
-        "designId": None,
+        "designId": design_id,
         "kind": "timeRecord",
         "sampleTimeSeconds": record.sample_time,
         "periodSamples": record.period,

@@ -24,17 +24,17 @@ def ranking(diagnosis: Diagnosis) -> Plot:
         y=[wrapped(one.title, 26) for one in best],
         orientation="h",
         marker={"color": [colour(0) if one.announced else NEUTRAL for one in best]},
-        text=[f"weight {weight(one.evidence.weight)}" for one in best if one.evidence],
+        text=[weight(one.evidence.weight) for one in best if one.evidence],
         textposition="outside",
         cliponaxis=False,
     )
     figure.update_layout(margin={"t": 8})
     figure.update_yaxes(autorange="reversed", showgrid=False)
     most = max((one.evidence.chi_square_explained for one in best if one.evidence), default=1.0)
-    figure.update_xaxes(title="misfit χ² that the effect explains", range=[0, 1.3 * max(most, 1e-9)], nticks=5)
+    figure.update_xaxes(title="explained misfit χ²", range=[0, 1.4 * max(most, 1e-9)], nticks=5)
     caption = (
-        "Effects fitted together with the model, best first. In blue those announced: they may be what is missing, and"
-        " these experiments cannot tell them apart. Weights are shares of the evidence (BIC)."
+        "Effects fitted together with the model, best first, with their weights as shares of the evidence (BIC)."
+        " In blue those announced: they may be what is missing, and these experiments cannot tell them apart."
     )
     return Plot(figure, caption, ranking_table(diagnosis.ranking))
 
@@ -73,7 +73,7 @@ def confusability(diagnosis: Diagnosis) -> Plot:
     titles = [one.title for one in diagnosis.ranking]
     values = np.array(diagnosis.confusability)[:count, :count]
     figure = new_figure(height=190 + 30 * count)
-    short = [wrapped(title, 26) for title in titles[:count]]
+    short = [wrapped(title, 20) for title in titles[:count]]
     figure.add_heatmap(
         x=np.arange(count),
         y=np.arange(count),

@@ -69,7 +69,7 @@ def energy_comparison(alternatives: Sequence[tuple[str, float]], axes: Axes) -> 
     )
     figure.update_layout(margin={"t": 8})
     figure.update_yaxes(autorange="reversed", showgrid=False)
-    figure.update_xaxes(title=labelled("energy Σu²", axes.energy_unit), range=[0, 1.2 * max(energies)], nticks=6)
+    figure.update_xaxes(title=labelled("energy Σu²", axes.energy_unit), range=[0, 1.35 * max(energies)], nticks=6)
     rows = tuple((name, significant(e, 4), percent(e / energies[0])) for name, e in alternatives)
     table = Table(("way", labelled("energy Σu²", axes.energy_unit), "relative to the first"), rows)
     return Plot(figure, "Input energy that different ways need for the same accuracy.", table)
