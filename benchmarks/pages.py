@@ -3,7 +3,8 @@
 A plant of 50 operating points with 1000 lines each on a real server. For every page the seconds until all is drawn, in
 a new browser profile (cold) and again in the same one (warm); the milliseconds from a click on a map of 50 000 cells to
 the next picture; and the milliseconds in which shells, scripts and the requests that pages make are answered while as
-many jobs as there are cores keep these busy. Prints tables with the machine; --output writes JSON.
+many jobs as there are cores keep these busy. Prints tables with the machine; --output writes JSON, --pictures FOLDER
+a picture of every page in light and dark, at 1280 and 390 pixels.
 """
 
 import argparse
@@ -24,7 +25,7 @@ from playwright.sync_api import Browser, sync_playwright
 from app.pages.page import pages
 from benchmarks.command import command_line, print_table, write_json
 from tests.support.api import Api, Json
-from tests.support.browser import READY
+from tests.support.browser import READY, Visit
 from tests.support.server import running_server
 
 POINTS, LINES = 50, 1000
@@ -148,6 +149,17 @@ def seconds_until_ready(browser: Browser, url: str, runs: int) -> dict[str, floa
     }
 
 
+def take_pictures(browser: Browser, url: str, known: dict[str, str], folder: Path) -> None:
+    """Every page in light and dark, wide and narrow; raises AssertionError for errors on a page."""
+    folder.mkdir(parents=True, exist_ok=True)
+    with browser.new_context(base_url=url) as context:
+        visit = Visit(context.new_page(), url)
+        for name, path in paths(known).items():
+            visit.open(path)
+            visit.look(folder, re.sub(r"\W+", "-", name).strip("-"))
+        assert visit.faults == []
+
+
 def milliseconds_of_clicks(browser: Browser, url: str) -> dict[str, float]:
     """Clicks on a map of 50 000 cells."""
     with browser.new_context(base_url=url) as context:
@@ -212,6 +224,8 @@ def main(arguments: argparse.Namespace) -> None:
                 for name, path in paths(known).items()
             ]
             found["clicks"] = milliseconds_of_clicks(browser, server.url)
+            if arguments.pictures:
+                take_pictures(browser, server.url, known, arguments.pictures)
             browser.close()
         print_table(found["ready"])
         print_table([found["clicks"]])
@@ -223,4 +237,5 @@ def main(arguments: argparse.Namespace) -> None:
 if __name__ == "__main__":
     parser = command_line(__doc__ or "", runs=5)
     parser.add_argument("--chromium", default=shutil.which("chromium"), help="the browser (default %(default)s)")
+    parser.add_argument("--pictures", type=Path, help="folder for pictures of all pages")
     main(parser.parse_args())

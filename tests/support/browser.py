@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from playwright.sync_api import Page
 
 READY = "body[data-ready]"
+WIDTHS = (390, 1280)
 
 
 class Visit:
@@ -35,15 +36,14 @@ class Visit:
         self.page.wait_for_selector(READY, state="attached")
 
     def look(self, folder: Path, name: str) -> None:
-        """Pictures in light and dark, at 1280 and 390 pixels."""
+        """Pictures in light and dark, narrow and wide."""
         for scheme in ("light", "dark"):
             self.page.emulate_media(color_scheme=scheme)
-            for width in (1280, 390):
+            for width in WIDTHS:
                 self.page.set_viewport_size({"width": width, "height": 900})
                 self.page.wait_for_timeout(300)
                 self.page.screenshot(path=folder / f"{name}-{scheme}-{width}.png", full_page=True)
         self.page.emulate_media(color_scheme="light")
-        self.page.set_viewport_size({"width": 1280, "height": 900})
 
     def expect_refusal(self, status: int) -> None:
         """Forget what the browser says on its console about one answer that was meant to be refused."""
@@ -52,7 +52,15 @@ class Visit:
         self.faults.remove(told)
 
     def violations(self) -> list[str]:
-        """What axe-core finds serious or critical on the page as it is."""
+        """What axe-core finds serious or critical on the page as it is, and whether it is wider than the window."""
+        return self._grave() + [f"wider than {width} pixels" for width in WIDTHS if self._is_wider(width)]
+
+    def _is_wider(self, width: int) -> bool:
+        self.page.set_viewport_size({"width": width, "height": 900})
+        wider: bool = self.page.evaluate(f"document.documentElement.scrollWidth > {width}")
+        return wider
+
+    def _grave(self) -> list[str]:
         self.page.evaluate(_axe())
         found: list[dict[str, Any]] = self.page.evaluate("axe.run().then((results) => results.violations)")
         grave = [one for one in found if one["impact"] in ("serious", "critical")]

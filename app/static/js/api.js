@@ -87,7 +87,7 @@ async function problemOf(answer) {
 }
 
 // crypto.randomUUID is there on secure origins only, which a server in the local network is not.
-export function newKey() {
+function newKey() {
   return [...crypto.getRandomValues(new Uint8Array(16))].map((byte) => byte.toString(16).padStart(2, "0")).join("");
 }
 

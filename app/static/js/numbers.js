@@ -1,6 +1,6 @@
 // Numbers as a reader wants them: as many digits as they are worth, with their unit; null is "not known".
 
-export const UNKNOWN = "not known";
+const UNKNOWN = "not known";
 const SUPERSCRIPTS = { "-": "⁻", 0: "⁰", 1: "¹", 2: "²", 3: "³", 4: "⁴", 5: "⁵", 6: "⁶", 7: "⁷", 8: "⁸", 9: "⁹" };
 
 // A number to so many significant digits, without an exponent between 10⁻⁴ and 10⁶.
@@ -60,7 +60,7 @@ export const radPerSecond = (inHertz) => 2 * Math.PI * inHertz;
 
 // An operating point in words: names and units come from the scheduling variables of the plant.
 export function pointLabel(point, variables) {
-  return point.map((value, i) => `${variables[i].name} = ${exact(value, variables[i].unit)}`).join(", ");
+  return point.map((value, i) => `${variables[i].name} = ${exact(Number(value.toPrecision(4)), variables[i].unit)}`).join(", ");
 }
 
 export function duration(seconds) {

@@ -25,11 +25,6 @@ export async function plot(place, { draw, caption, table = null, height = 340, l
   return chart;
 }
 
-// Draw anew what has changed, without a new figure.
-export function redraw(chart) {
-  return drawn.get(chart)?.();
-}
-
 // Zooming one of the charts zooms the others along the named axes, e.g. "xaxis".
 export function linkAxes(charts, names = ["xaxis"]) {
   let busy = false;

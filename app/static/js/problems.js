@@ -43,7 +43,7 @@ export function problemBox(problem, errors = problem.errors ?? [], marked = 0) {
   return box;
 }
 
-export function clearProblems(...places) {
+function clearProblems(...places) {
   for (const place of places.filter(Boolean)) {
     for (const box of place.querySelectorAll("[data-problem]")) box.remove();
     for (const field of place.querySelectorAll("[aria-invalid]")) {

@@ -53,7 +53,7 @@ export function gains({ re, im }) {
 }
 
 // Phase in degrees without jumps.
-export function unwrapped({ re, im }) {
+function unwrapped({ re, im }) {
   let turns = 0;
   let before = null;
   return re.map((real, i) => {

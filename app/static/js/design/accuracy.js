@@ -11,7 +11,7 @@ export function drawAccuracy(place, design, model) {
   const before = model.standardDeviations;
   const asked = askedFor(design, names.length);
   const series = [["asked for", asked, "line-ew-open"], ["before", before, "circle-open"], ["after", after, "circle"]].filter(([, values]) => values?.some((one) => one !== null));
-  const caption = before ? "Standard deviations of the parameters, before and after the experiments." : "Standard deviations of the parameters after the experiments; nothing is known of them before.";
+  const caption = before ? `Standard deviations of the parameters, before and after the experiments${design.request.usePriorInformation ? "" : " alone, what was known before not counted in"}.` : "Standard deviations of the parameters after the experiments; nothing is known of them before.";
   return plot(place, {
     caption, height: 300,
     draw: () => ({

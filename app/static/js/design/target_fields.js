@@ -2,11 +2,11 @@
 
 import { h } from "../dom.js";
 import { field, fields, integerInput, numberInput, numberOf, textInput } from "../forms.js";
-import { exact, hertz, labelled, quantity, radPerSecond, significant } from "../numbers.js";
+import { hertz, labelled, quantity, radPerSecond, significant } from "../numbers.js";
 import { pluginField } from "../plugin_field.js";
 import { combinations, pointsIn, spread } from "./grids.js";
 
-export const QUANTILE_95 = 1.96; // a normal quantity lies within so many standard deviations with 95 % probability
+const QUANTILE_95 = 1.96; // a normal quantity lies within so many standard deviations with 95 % probability
 
 // By kind: (plant, pointer, coefficients, catalogue entry) to {element, value()}.
 const FIELDS = { response_deviation: responseFields, parameter_deviation: parameterFields, local_covariance: coefficientFields };
@@ -78,7 +78,7 @@ export const plantCoefficients = (names) => names.filter((name) => /^(a|b)\d|^ta
 export function targetText(target, plant) {
   if (target.kind === "response_deviation") {
     const within = target.relative ? `${significant(100 * QUANTILE_95 * target.standardDeviation)} %` : significant(QUANTILE_95 * target.standardDeviation);
-    const band = `${exact(hertz(target.minimumRadPerSecond))} to ${quantity(hertz(target.maximumRadPerSecond), "Hz")}`;
+    const band = `${significant(hertz(target.minimumRadPerSecond))} to ${quantity(hertz(target.maximumRadPerSecond), "Hz")}`;
     return `response within ± ${within} (95 %) from ${band} at ${target.operatingPoints.length} operating points`;
   }
   if (target.kind === "parameter_deviation") {
