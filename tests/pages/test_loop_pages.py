@@ -1,5 +1,6 @@
 """Models, comparisons, diagnoses and versions: what is seen, clicked and read on their pages."""
 
+import re
 from pathlib import Path
 
 import pytest
@@ -81,13 +82,13 @@ def test_a_refused_extension_says_so_at_its_field(visit: Visit, known: Json) -> 
     visit.expect_refusal(422)
 
 
-def test_versions_stand_side_by_side_with_their_report(
-    visit: Visit, known: Json, tmp_path: Path, server: Server
-) -> None:
-    api = Api(server.url)
-    body = {"effect": "cubic_stiffness", "experimentIds": known["fitted"], "heldOutExperimentIds": known["heldOut"]}
-    grown = api.made(f"/models/{known['model']}/extensions", body)
-    page = visit.open(f"/plants/{known['plant']}/history?model={grown['id']}")
+def test_effects_are_added_until_noise_is_left(visit: Visit, known: Json, tmp_path: Path, server: Server) -> None:
+    page = visit.open(f"/plants/{known['plant']}/diagnose/{known['diagnosis']}")
+    page.get_by_role("button", name="Add effects until noise explains what is left").click()
+    page.wait_for_url(re.compile(r"/history\?model=\w+$"), timeout=40_000)
+    visit.wait()
+    grown = Api(server.url).get(f"/models/{page.url.rpartition('=')[2]}")
+    assert grown["extension"]["heldOutExperimentIds"] == known["heldOut"]
     after = 100 * grown["extension"]["after"]["heldOut"]
     assert f"→ {after:.3g} %" in page.locator("#headline").inner_text()
     assert page.locator("#pair h3").all_inner_texts() == ["1. without it", "2. With cubic stiffness"]
@@ -108,3 +109,21 @@ def test_a_model_says_where_it_came_from(visit: Visit, known: Json, server: Serv
     assert "rational fit" in page.locator("#provenance").inner_text()
     page.get_by_text("Its 3 experiments").click()
     assert page.locator("#provenance tbody").last.get_by_role("link").count() == len(POINTS)
+
+
+def test_what_cannot_be_told_apart_is_decided_by_a_design(visit: Visit, server: Server) -> None:
+    api = Api(server.url)
+    example = api.made("/examples", {"hiddenEffect": "delay", "seed": 5})
+    few = example["experimentIds"][1::4]
+    model = api.made("/models", {"plantId": example["plantId"], "experimentIds": few, **ESTIMATORS})["id"]
+    body = {"modelId": model, "experimentIds": few, "effects": ["delay", "lag"]}
+    diagnosis = api.made("/diagnoses", body)
+    assert diagnosis["announced"] == ["delay", "lag"]
+    page = visit.open(f"/plants/{example['plantId']}/diagnose/{diagnosis['id']}")
+    assert "cannot be told apart here: delay and first-order lag" in page.locator("#verdict").inner_text()
+    page.get_by_role("button", name="Design the deciding experiment").click()
+    page.wait_for_url(re.compile(r"/design/\w+$"), timeout=40_000)
+    visit.wait()
+    asked, expected = page.get_by_role("row", name="delay or lag?").get_by_role("cell").all_inner_texts()[:2]
+    assert asked.startswith("90.0")
+    assert float(expected.split()[0]) > 89.9

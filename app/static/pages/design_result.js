@@ -4,6 +4,7 @@ import { get } from "../js/api.js";
 import { context } from "../js/context.js";
 import { drawAccuracy } from "../js/design/accuracy.js";
 import { bindingTable } from "../js/design/binding.js";
+import { drawDecisions } from "../js/design/decisions.js";
 import { drawSignals } from "../js/design/signals.js";
 import { drawEnergies, drawSpectra, energyUnit } from "../js/design/spectra.js";
 import { targetText } from "../js/design/target_fields.js";
@@ -24,6 +25,7 @@ page(async () => {
   append(byId("where"), [h("h2", {}, "Operating points and spectra")]);
   await drawEnergies(byId("where"), described, design);
   await drawSpectra(byId("where"), described, design);
+  drawDecisions(byId("accuracy"), design);
   append(byId("accuracy"), [h("h2", {}, "Accuracy")]);
   await drawAccuracy(byId("accuracy"), design, model);
   append(byId("accuracy"), [bindingTable(design, described)]);

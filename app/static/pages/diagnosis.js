@@ -4,6 +4,7 @@ import { get, list } from "../js/api.js";
 import { context } from "../js/context.js";
 import { AddEffect } from "../js/diagnose/add_effect.js";
 import { drawConfusability } from "../js/diagnose/confusability.js";
+import { drawDeciding } from "../js/diagnose/deciding.js";
 import { MissingView } from "../js/diagnose/missing_view.js";
 import { drawRanking } from "../js/diagnose/ranking.js";
 import { reasons, VERDICTS } from "../js/diagnose/verdict.js";
@@ -25,6 +26,7 @@ page(async () => {
   drawVerdict(diagnosis, model);
   const add = new AddEffect(byId("job"), { plant: found, diagnosis, comparison, model, models: indexed(models), experiments });
   drawRanking(byId("ranking"), diagnosis, { plant: found, add });
+  drawDeciding(byId("deciding"), diagnosis, byId("job"));
   drawConfusability(byId("confusability"), diagnosis);
   drawVisibility(byId("visibility"), diagnosis);
   await new MissingView(byId("missing"), diagnosis, { plant: found, experiments: indexed(experiments) }).show();

@@ -5,7 +5,7 @@ import { context } from "../js/context.js";
 import { byId, h, message, replace } from "../js/dom.js";
 import { field, select, submitButton } from "../js/forms.js";
 import { drawPair } from "../js/history/pair.js";
-import { broughtText, staircasePlot, stepsOf } from "../js/history/staircase.js";
+import { broughtText, sinceText, staircasePlot, stepsOf } from "../js/history/staircase.js";
 import { runJob } from "../js/jobs.js";
 import { effectText } from "../js/models/effects.js";
 import { datedTitle, effectsText, indexed, latest, lineage, titleOf } from "../js/models/versions.js";
@@ -25,9 +25,9 @@ page(async () => {
   const ends = latest(models);
   if (!models.length) return empty();
   const end = asked ?? ends[0];
-  drawHeadline(end, found, asked !== undefined);
   const line = lineage(end, known);
   const steps = stepsOf(line);
+  drawHeadline(end, found, { asked: asked !== undefined, steps });
   drawVersions(line, steps, ends);
   replace(byId("staircase"));
   if (steps.length > 1) await staircasePlot(byId("staircase"), steps);
@@ -39,11 +39,12 @@ function empty() {
   for (const id of ["versions", "pair"]) replace(byId(id));
 }
 
-function drawHeadline(model, found, asked) {
+function drawHeadline(model, found, { asked, steps }) {
   if (!model.extension) return replace(byId("headline"), h("p", { class: "lead" }, "Every version stays. To undo a step, go on from an earlier one."));
   const { kind, text, effect } = broughtText(model);
   return replace(byId("headline"),
-    message(kind, h("p", {}, h("strong", {}, text)), h("p", {}, `Added: ${effect.title}, ${effectText(effect, found)}.`)),
+    message(kind, h("p", {}, h("strong", {}, text)), h("p", {}, `Added: ${effect.title}, ${effectText(effect, found)}.`),
+      steps.length > 2 ? sinceText(steps) : null),
     asked ? h("p", { class: "actions" }, h("a", { class: "button", href: at(`compare?model=${model.id}`) }, "Compare the new version"), h("a", { class: "button quiet", href: at(`models/${model.id}`) }, "Look at it")) : null);
 }
 
@@ -69,6 +70,6 @@ function drawVersions(line, steps, ends) {
   chooser.addEventListener("change", () => { location.search = `?model=${chooser.value}`; });
   const report = submitButton("Download the report of all this", () => downloadReport(line.at(-1)), { class: "quiet" });
   replace(byId("versions"),
-    h("h2", {}, "Versions"), ends.length > 1 || !ends.includes(line.at(-1)) ? h("div", { class: "fields" }, field("line of versions that ends with", chooser)) : null,
+    h("h2", {}, "Versions"), ends.length > 1 || !ends.includes(line.at(-1)) ? h("div", { class: "narrow" }, field("line of versions that ends with", chooser)) : null,
     table({ columns: ["version", "error, fitted", "error, held out", "undo", "effects", "made"], rows }), h("p", { class: "actions" }, report));
 }

@@ -1,18 +1,20 @@
 // "Add this effect": the model is fitted once more with it; the error on held-out experiments says what it brought.
 
-import { h, replace } from "../dom.js";
+import { get } from "../api.js";
+import { h } from "../dom.js";
 import { experimentChoice } from "../compare/experiment_choice.js";
 import { field, fields, select, textInput } from "../forms.js";
 import { runJob } from "../jobs.js";
 import { comparable } from "../models/experiments.js";
 import { fittedTo, titleOf } from "../models/versions.js";
-import { problemBox, showProblem } from "../problems.js";
+import { showProblem } from "../problems.js";
 import { historyPath } from "./ranking.js";
 
 export class AddEffect {
   // jobPlace: where progress is shown; `panel` holds the choices, folded in.
   constructor(jobPlace, { plant, diagnosis, comparison, model, models, experiments }) {
     Object.assign(this, { jobPlace, diagnosis, model });
+    this.judged = [...new Set(diagnosis.visibility.map((one) => one.kind))];
     const variables = plant.schedulingVariables;
     const usable = experiments.filter((one) => comparable(one, model));
     const fitted = new Set([...fittedTo(model, models), ...diagnosis.experimentIds]);
@@ -28,16 +30,25 @@ export class AddEffect {
   }
 
   // Start the refit with a ranked effect; goes on to the history when it is done.
-  async start(ranked, button) {
+  start(ranked, button) {
+    return this.#run(`/models/${this.model.id}/extensions`, this.#request(ranked), button, ({ id }) => id);
+  }
+
+  // Diagnose and add the best effect, again and again, until noise explains what is left.
+  startStaircase(button) {
+    const lastOf = async ({ href }) => (await get(href)).steps.at(-1).modelId;
+    return this.#run(`/models/${this.model.id}/staircases`, { ...this.#common(), effects: this.judged }, button, lastOf);
+  }
+
+  async #run(path, body, button, modelOf) {
     button.disabled = true;
     this.jobPlace.scrollIntoView({ block: "center" });
     try {
-      const { id } = await runJob(`/models/${this.model.id}/extensions`, this.#request(ranked), this.jobPlace);
-      location.href = historyPath(id);
+      location.href = historyPath(await modelOf(await runJob(path, body, this.jobPlace)));
     } catch (problem) {
       if (!problem.title) throw problem;
       if (problem.errors?.length) this.panel.open = true;
-      if (!showProblem(problem, { place: this.jobPlace, form: this.panel })) replace(this.jobPlace, problemBox(problem));
+      showProblem(problem, { place: this.jobPlace, form: this.panel });
     } finally {
       button.disabled = false;
     }
@@ -45,9 +56,12 @@ export class AddEffect {
 
   #request(ranked) {
     return {
-      effect: ranked.kind, quantity: ranked.quantity, amplitudeDegree: Number(this.degree.value), experimentIds: this.fit.value(), heldOutExperimentIds: this.hold.value(),
-      diagnosisId: this.diagnosis.id, meanValue: this.diagnosis.meanValue, seed: this.diagnosis.seed,
+      ...this.#common(), effect: ranked.kind, quantity: ranked.quantity, diagnosisId: this.diagnosis.id,
       name: this.name.value.trim() || `${titleOf(this.model)} + ${ranked.title}`.slice(-200),
     };
+  }
+
+  #common() {
+    return { amplitudeDegree: Number(this.degree.value), experimentIds: this.fit.value(), heldOutExperimentIds: this.hold.value(), meanValue: this.diagnosis.meanValue, seed: this.diagnosis.seed };
   }
 }

@@ -11,7 +11,7 @@ export function drawRanking(place, diagnosis, { plant, add }) {
   const refitted = diagnosis.ranking.filter((one) => one.evidence);
   replace(place,
     refitted.length ? h("p", { class: "hint" }, "Each was fitted together with the parameters of the model. The weight says how the evidence divides among them and the model as it is.") : h("p", {}, "No effect stands out."),
-    refitted.length ? [h("ol", { class: "effects" }, refitted.map((one) => entry(one, { plant, add }))), add.panel] : null,
+    refitted.length ? [h("ol", { class: "effects" }, refitted.map((one) => entry(one, { plant, add }))), untilNoise(add), add.panel] : null,
     tableBehind(() => ({ columns: ["effect", "acts on", "score", "p-value", "adjusted p-value"], textColumns: 2,
       rows: diagnosis.ranking.map((one) => [nameOf(one), one.place, significant(one.score), probability(one.pValue), probability(one.adjustedPValue)]) }), `All ${diagnosis.ranking.length} effects that were judged`));
 }
@@ -25,6 +25,10 @@ function entry(one, { plant, add }) {
     h("div", {}, h("p", {}, effectText(evidence.effect, plant)), stopped),
     h("div", {}, weightBar(evidence.weight), h("p", { class: "hint" }, `χ² explained per parameter: ${significant(evidence.chiSquarePerParameter)}; adjusted p-value: ${probability(one.adjustedPValue)}`)),
     button);
+}
+
+function untilNoise(add) {
+  return h("p", { class: "actions" }, h("button", { type: "button", class: "quiet", onclick: (event) => add.startStaircase(event.target) }, "Add effects until noise explains what is left"));
 }
 
 export const nameOf = (one) => (one.quantity ? `${one.title}: ${one.quantity}` : one.title);

@@ -15,7 +15,7 @@ export async function drawPair(place, { line, steps, plant, experiments }) {
   const choices = line.map((model, i) => [i, `${i + 1}. ${titleOf(model)}`]);
   const [left, right] = [select(choices, 0), select(choices, line.length - 1)];
   const [responses, numbers] = [h("div", {}), h("div", {})];
-  replace(place, h("div", { class: "fields" }, field("left", left), field("right", right)), responses, numbers);
+  replace(place, h("div", { class: "columns" }, field("left", left), field("right", right)), responses, numbers);
   const chosen = () => [left, right].map((one) => line[Number(one.value)]);
   const titled = () => chosen().map((model) => [`${line.indexOf(model) + 1}. ${titleOf(model)}`, model]);
   const used = experiments.filter((one) => line.some((model) => model.experimentIds.includes(one.id)));

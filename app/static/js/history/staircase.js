@@ -58,3 +58,10 @@ export function broughtText(model) {
   const times = fallen ? `, ${significant(from / to, 2)} times less` : "";
   return { kind: fallen ? "success" : "warning", text: `${fallen ? "The error has fallen" : "The error has not fallen"} ${what}: ${percent(from)} → ${percent(to)}${times}.${fitted}`, effect: model.effects.at(-1) };
 }
+
+// What all steps together brought.
+export function sinceText(steps) {
+  const held = steps.every((one) => one.heldOut !== null);
+  const [from, to] = [steps[0], steps.at(-1)].map((one) => (held ? one.heldOut : one.fitted));
+  return `Since the first version: ${percent(from)} → ${percent(to)}.`;
+}
