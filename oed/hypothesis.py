@@ -82,7 +82,12 @@ class Hypothesis:
 
 
 def _require_shown(effect: Effect, flow: Flow) -> None:
-    """Raises MisuseError for an effect that lies in how or when was measured, which no choice of signals decides."""
+    """Raises MisuseError for an effect that lies in how or when was measured, or that a response cannot show."""
+    if effect.needs_records and flow.batch.signals is None:
+        raise MisuseError(
+            f"{effect.title} shows only in periodic records; name no frequency responses as earlier experiments",
+            "effect",
+        )
     if effect.of_measurements or not effect.judgeable(flow):
         raise MisuseError(
             f"{effect.title} lies in how or when was measured, not in the plant: no experiment can be designed for it",

@@ -68,6 +68,8 @@ def _check_prior(model: Model, request: DesignRequest, experiments: Sequence[Mea
     if request.use_prior_information and experiments:
         detail = "the model was learnt from experiments too, and what they tell would count twice; give one of the two"
         raise UnprocessableError.at("/priorExperimentIds", detail)
+    if request.prior_experiment_ids and not experiments:
+        raise UnprocessableError.at("/priorExperimentIds", "only the service knows experiments by their identifiers")
     check_time_domain(model, experiments, "/priorExperimentIds")
     check_logged(model, experiments, "/priorExperimentIds")
 

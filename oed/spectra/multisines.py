@@ -19,6 +19,7 @@ from oed.spectra.family import NEARLY, Block, Offer, foremost
 from oed.subject import Subject
 
 MOST_CANDIDATES = 20_000
+MOST_SAMPLES = 2**23
 LEAST_PERIODS = 2
 PARTS = (1, 2, 4, 8)
 
@@ -103,13 +104,8 @@ class Multisines:
     ) -> "MultisinePricing":
         """Simulate every candidate at the operating points (M, s) that has a steady state there."""
         p = subject.base.dependence.points(points)
+        self._check_size(len(p))
         signals = self.signals(band, sample_time)
-        if len(p) * len(signals) > MOST_CANDIDATES:
-            raise RangeError(
-                f"{len(signals)} signals at {len(p)} operating points are more than {MOST_CANDIDATES} candidates; give"
-                " fewer levels, bands, draws or operating points",
-                "operating_points",
-            )
         information, steady = _informations(subject, p, signals, sample_time)
         places = np.repeat(np.arange(len(p)), len(signals)).reshape(len(p), -1)[steady]
         numbers = np.tile(np.arange(len(signals)), (len(p), 1))[steady]
@@ -121,6 +117,7 @@ class Multisines:
         self, model: ExtendedModel, points: ArrayLike, band: tuple[float, float] | None, sample_time: float
     ) -> tuple[Batch, ...]:
         """The signals over the whole band at the middle level, one period each, at every point."""
+        self._check_size(len(model.base.dependence.points(points)))
         signals = self.signals(band, sample_time)
         level = sorted(self.levels)[len(self.levels) // 2]
         own = [one for one in signals if abs(one.level / level - 1) < 1e-9] or signals
@@ -134,7 +131,7 @@ class Multisines:
         shapes = [
             (lines, phasors)
             for generator in generators
-            for low, high in self.bands or _parts(band or (spacing, np.pi / sample_time))
+            for low, high in self._bands(band or (spacing, np.pi / sample_time))
             for lines, phasors in [self._drawn(low / spacing, high / spacing, generator)]
             if len(lines)
         ]
@@ -144,6 +141,25 @@ class Multisines:
             MultisineSpectrum(np.asarray(lines * spacing, dtype=np.float64), lines, level * phasors, self.samples, 1)
             for level, (lines, phasors) in product(sorted(self.levels), shapes)
         ]
+
+    def _bands(self, whole: tuple[float, float]) -> list[tuple[float, float]]:
+        """The bands to choose from, as far as they lie in the whole one."""
+        return [(max(low, whole[0]), min(high, whole[1])) for low, high in self.bands or _parts(whole)]
+
+    def _check_size(self, points: int) -> None:
+        signals = self.draws * len(self.levels) * (len(self.bands) or sum(PARTS))
+        if points * signals > MOST_CANDIDATES:
+            raise RangeError(
+                f"{signals} signals at {points} operating points are more than {MOST_CANDIDATES} candidates; give fewer"
+                " levels, bands, draws or operating points",
+                "operating_points",
+            )
+        if max(points, signals) * self.samples > MOST_SAMPLES:
+            raise RangeError(
+                f"periods of {self.samples} samples are too long for {points} operating points and {signals} signals;"
+                " give shorter periods or fewer of them",
+                "samples",
+            )
 
     def _drawn(self, low: float, high: float, generator: np.random.Generator) -> tuple[IntArray, ComplexArray]:
         """Lines between two ends, and phasors of random phase whose root mean square is one."""

@@ -6,6 +6,7 @@ import cvxpy
 import numpy as np
 import pytest
 
+from identification.arrays import FloatArray
 from identification.effects.quadratic_stiffness import QuadraticStiffness
 from identification.errors import MisuseError, RangeError
 from identification.extension.model import ExtendedModel, placed
@@ -70,16 +71,23 @@ def test_whole_periods_meet_the_targets_and_none_is_idle() -> None:
     result, statement = design(asked), stated(problem(THETA, SEEN))
     pricing = statement.pricing
     assert isinstance(pricing, MultisinePricing)
-    total = np.zeros((statement.plant,) * 2)
+    total, spare = np.zeros((statement.plant,) * 2), []
     for one in result.experiments:
         assert isinstance(one.spectrum, MultisineSpectrum)
         place = int(np.flatnonzero(POINTS[:, 0] == one.operating_point[0])[0])
         number = [np.array_equal(one.spectrum.phasors, signal.phasors) for signal in pricing.signals].index(True)
         candidate = np.flatnonzero((pricing.places == place) & (pricing.numbers == number))[0]
-        total += one.energy * pricing.information[candidate]
+        shown = one.energy * pricing.information[candidate]
+        total += shown
+        spare.append(shown if one.spectrum.periods == 2 else shown / one.spectrum.periods)
     scale = 1 / np.sqrt(np.diagonal(total))
-    for target in statement.targets[:, : statement.plant, : statement.plant]:
-        assert np.linalg.eigvalsh((total - target) * np.outer(scale, scale))[0] >= -1e-9
+
+    def slack(information: FloatArray) -> float:
+        left = information - statement.targets[:, : statement.plant, : statement.plant]
+        return float(np.linalg.eigvalsh(left * np.outer(scale, scale))[:, 0].min())
+
+    assert slack(total) >= -1e-9
+    assert all(slack(total - one) < 0 for one in spare)
     assert _periods(result).min() >= 2
     assert result.decisions[0][1].power >= 0.9
     assert sum(one.energy for one in result.experiments) == pytest.approx(result.total_energy)
@@ -94,6 +102,8 @@ def test_signals_have_the_levels_and_bands_asked_for() -> None:
         lines = np.fft.rfft(one.period())
         assert lines[one.indices] == pytest.approx(64 * one.phasors)
         assert np.allclose(np.delete(lines, one.indices), 0, atol=1e-9)
+    narrowed = Multisines(128, (1.0,), ((1.0, 5.0),)).signals((2.0, 3.0), SAMPLE_TIME)
+    assert 2.0 <= narrowed[0].frequencies[0] <= narrowed[0].frequencies[-1] <= 3.0
     assert not np.array_equal(signals[0].phasors, signals[1].phasors)
     again = Multisines(128, (2.0, 0.5), ((1.0, 5.0),), share=0.5, draws=2, seed=1).signals(None, SAMPLE_TIME)
     assert all(np.array_equal(a.phasors, b.phasors) for a, b in zip(signals, again, strict=True))
@@ -132,5 +142,9 @@ def test_families_that_make_no_sense() -> None:
             replace(FAMILY, **options)  # type: ignore[arg-type]
     with pytest.raises(MisuseError, match="give a grid"):
         design(problem(SEEN, box=True))
+    with pytest.raises(RangeError, match="too long"):
+        design(problem(SEEN, family=replace(FAMILY, samples=2**22)))
+    with pytest.raises(RangeError, match="candidates"):
+        design(problem(SEEN, family=replace(FAMILY, levels=tuple(np.arange(1.0, 5000.0)))))
     with pytest.raises(RangeError, match="no line"):
         design(problem(SEEN, family=Multisines(128, (1.0,), ((0.01, 0.02),))))
