@@ -8,10 +8,15 @@ from pathlib import Path
 import pytest
 
 
-def shown(repository: Path, name: str) -> str:
+def shown(repository: Path, name: str, *arguments: str) -> str:
     script = repository / "examples" / name
     finished = subprocess.run(
-        [sys.executable, script], capture_output=True, text=True, check=True, timeout=120, env=_environment(repository)
+        [sys.executable, script, *arguments],
+        capture_output=True,
+        text=True,
+        check=True,
+        timeout=120,
+        env=_environment(repository),
     )
     assert finished.stderr == ""
     return finished.stdout
@@ -34,3 +39,15 @@ def test_the_response_is_as_accurate_as_asked(repository: Path) -> None:
     assert text.startswith("converged")
     widths = [float(x) for x in re.findall(r"known to ±([\d.]+) %", text)]
     assert max(widths) == pytest.approx(1.0, abs=0.01)
+
+
+def test_what_is_missing_is_found_and_drawn(repository: Path, tmp_path: Path) -> None:
+    path = tmp_path / "report.html"
+    lines = shown(repository, "missing_effect.py", str(path)).splitlines()
+    assert lines[1].startswith("Coulomb friction: ")
+    errors = [float(line.rpartition(" ")[2]) for line in lines[:2]]
+    assert errors[1] < 0.3 * errors[0]
+    page = path.read_text()
+    for title in ("How the error fell", "At first", "What is missing", "In the end"):
+        assert f"<h2>{title}</h2>" in page
+    assert page.count('role="img"') == 1 + 4 + 4 + 4

@@ -2,17 +2,14 @@
 
 import numpy as np
 
+from app.report.chain.blocks import RESIDUALS, comparison_blocks, diagnosis_blocks, diagnosis_text
 from app.report.chain.documents import Chain, Compared
 from app.report.document import Plot, Section, Table
 from app.report.effect_text import amplitude
 from app.report.figures.bode import bode
-from app.report.figures.effects import confusability, ranking, visibility
-from app.report.figures.misfit import misfit_by_band, misfit_by_class, misfit_by_point, overall_table
-from app.report.figures.misfit_map import misfit_map
-from app.report.figures.missing import missing
 from app.report.figures.poles import poles
 from app.report.figures.versions import side_by_side
-from app.report.numbers import estimate, percent, significant
+from app.report.numbers import estimate, significant
 from app.schemas.diagnoses import Diagnosis
 from app.schemas.models import Model
 from identification.arrays import FloatArray
@@ -24,12 +21,6 @@ from identification.signals import OperatingPoint
 FINE = 81
 FREQUENCIES = 201
 MOST_PARAMETERS = 200
-VERDICTS = {
-    "nothingMissing": "Nothing is missing that these experiments could show.",
-    "explained": "The best effect leaves nothing but noise.",
-    "partlyExplained": "The best effect explains a part; something else is missing too.",
-    "notInTheLibrary": "Something is missing, and no effect of the library has its shape.",
-}
 
 
 def model_section(chain: Chain, number: int) -> Section:
@@ -82,17 +73,9 @@ def _frequencies(chain: Chain, model: LpvModel) -> FloatArray:
 
 def comparison_section(chain: Chain, compared: Compared, number: int) -> Section:
     """Where a version fails."""
-    document = compared.document
-    blocks: list[Plot | Table] = [misfit_map(chain.map_rows(compared)), _fit_table(chain, compared)]
-    if any(part.lack_of_fit for part in document.parts):
-        blocks += [
-            overall_table(document.parts),
-            misfit_by_point(document.parts, chain.axes),
-            misfit_by_band(document.parts),
-            misfit_by_class(document.parts),
-        ]
-    text = "Residuals divided by their standard deviation: noise, and off the fitted data the model's own uncertainty."
-    return Section(f"Version {number + 1} against measurements", (text,), tuple(blocks))
+    rows, parts = chain.map_rows(compared), compared.document.parts
+    blocks = comparison_blocks(rows, parts, chain.axes)
+    return Section(f"Version {number + 1} against measurements", (RESIDUALS,), (*blocks, _fit_table(chain, compared)))
 
 
 def _fit_table(chain: Chain, compared: Compared) -> Table:
@@ -109,21 +92,8 @@ def _fit_table(chain: Chain, compared: Compared) -> Table:
 
 def diagnosis_section(chain: Chain, diagnosis: Diagnosis, number: int) -> Section:
     """What a version lacks."""
-    titles = {one.kind: one.title for one in diagnosis.ranking}
-    names = ", ".join(titles.get(kind, kind) for kind in diagnosis.announced)
-    found = f"Announced: {names}. " if names else ""
-    share = f"The best effect explains {percent(diagnosis.explained_share)} of it." if names else ""
-    text = (f"{found}{VERDICTS[diagnosis.verdict]} {share}".strip(),)
-    blocks: list[Plot | Table] = []
-    if any(one.evidence for one in diagnosis.ranking):
-        blocks.append(ranking(diagnosis))
-    if diagnosis.missing:
-        blocks.append(missing(diagnosis, chain.labels, chain.axes))
-    if len(diagnosis.ranking) > 1:
-        blocks.append(confusability(diagnosis))
-    if diagnosis.visibility:
-        blocks.append(visibility(diagnosis.visibility))
-    return Section(f"What version {number + 1} lacks", text, tuple(blocks))
+    blocks = diagnosis_blocks(diagnosis, chain.labels, chain.axes)
+    return Section(f"What version {number + 1} lacks", (diagnosis_text(diagnosis),), tuple(blocks))
 
 
 def side_by_side_plots(chain: Chain) -> list[Plot]:

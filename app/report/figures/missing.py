@@ -1,6 +1,6 @@
 """The smooth picture of what a model lacks, and what effects explain of it."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import plotly.graph_objects as go
@@ -15,7 +15,7 @@ from identification.confidence import QUANTILE_95
 MOST = 4
 
 
-def missing(diagnosis: Diagnosis, labels: dict[str, str], axes: Axes) -> Plot:
+def missing(diagnosis: Diagnosis, labels: Mapping[str, str], axes: Axes) -> Plot:
     """|δG| at the experiments where most is missing, with the 95 % level of noise and the best effects over it."""
     chosen = _worst(diagnosis.missing)
     titles = {one.kind: one.title for one in diagnosis.ranking}
