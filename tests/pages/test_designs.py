@@ -81,3 +81,15 @@ def test_what_cannot_be_is_told_with_advice_and_at_the_field(visit: Visit, serve
     visit.wait()
     found = Api(server.url).get(f"/designs/{page.url.rsplit('/', 1)[1]}")
     assert found["outcome"]["advice"] in page.locator("#summary").inner_text(), json.dumps(found["outcome"])
+
+
+def test_a_design_that_would_notice_a_delay(visit: Visit, server: Server, plant: Json) -> None:
+    page = visit.open(f"/plants/{plant['id']}/design")
+    page.get_by_label("know", exact=True).select_option("effect_detection")
+    page.get_by_label("effect", exact=True).select_option("delay")
+    page.get_by_label("of at least").fill("0.1")
+    page.get_by_label("power (%)").fill("80")
+    assert visit.violations() == []
+    target = designed(visit, server)["request"]["targets"][0]
+    assert (target["effect"], target["amplitude"], target["power"], target["level"]) == ("delay", 0.1, 0.8, 0.05)
+    assert "see delay of size 0.100 with 80.0 % power" in page.locator("#summary").inner_text()

@@ -43,6 +43,7 @@ function inputFor(schema, start) {
   if (schema.type === "boolean") return withReader(checkbox(start ?? false), (input) => input.checked);
   if (schema.type === "integer") return withReader(integerInput(start), numberOf);
   if (schema.type === "number") return withReader(numberInput(start), numberOf);
+  if (schema.type === "string") return withReader(textInput(start ?? ""), (input) => input.value.trim() || null);
   if (schema.type === "array" && ["number", "integer"].includes(schema.items?.type)) {
     return withReader(textInput((start ?? []).join(" "), { placeholder: "numbers, separated by spaces" }), numbersOf);
   }

@@ -21,20 +21,21 @@ const at = (id) => `/plants/${context.plantId}/design/${id}`;
 
 page(async () => {
   const query = { plantId: context.plantId };
-  const [described, catalogue, models, designs] = await Promise.all([plant, get("/catalogue"), list("/models", query, 100), list("/designs", query, 500)]);
+  const [described, catalogue, models, designs, experiments] = await Promise.all([
+    plant, get("/catalogue"), list("/models", query, 100), list("/designs", query, 500), list("/experiments", query)]);
   drawEarlier(described, designs.filter((one) => !isTrial(one)));
   if (described.structure.timeDomain.endsWith("StateSpace")) {
     replace(byId("form"), message("", "Plants in state space are not designed for yet."));
   } else {
-    drawForm(described, catalogue, models);
+    drawForm(described, catalogue, models, experiments);
   }
 });
 
-function drawForm(described, catalogue, models) {
+function drawForm(described, catalogue, models, experiments) {
   const place = byId("form");
   const parts = {
     known: known(described, models, new URLSearchParams(location.search).get("model")),
-    targets: targets(catalogue.targets, described), where: where(described.schedulingVariables), limits: limits(catalogue, described),
+    targets: targets(catalogue, described), where: where(described.schedulingVariables), limits: limits(catalogue, described, experiments),
   };
   const form = h("form", { novalidate: true, onsubmit: (event) => event.preventDefault() },
     group("How accurately do you want to know the plant?", parts.targets.element),

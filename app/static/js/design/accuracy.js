@@ -8,8 +8,11 @@ export function drawAccuracy(place, design, model) {
   const after = design.expectedStandardDeviations;
   if (!after) return null;
   const names = design.parameterNames;
-  const before = model.standardDeviations;
-  const asked = askedFor(design, names.length);
+  // The parameters of effects, which the design has besides, are not in theta.
+  const of = (values) => values && names.map((name) => values[model.parameterNames.indexOf(name)] ?? null);
+  const before = of(model.standardDeviations);
+  const asked = of(askedFor(design, model.parameterNames.length));
+  const theta = of(model.theta);
   const series = [["asked for", asked, "line-ew-open"], ["before", before, "circle-open"], ["after", after, "circle"]].filter(([, values]) => values?.some((one) => one !== null));
   const caption = before ? `Standard deviations of the parameters, before and after the experiments${design.request.usePriorInformation ? "" : " alone, what was known before not counted in"}.` : "Standard deviations of the parameters after the experiments; nothing is known of them before.";
   return plot(place, {
@@ -19,7 +22,7 @@ export function drawAccuracy(place, design, model) {
       layout: { xaxis: axis("", { type: "category" }), yaxis: axis("standard deviation", { log: true }), showlegend: true },
     }),
     table: () => ({ columns: ["parameter", "value", ...series.map(([name]) => name)],
-      rows: names.map((name, i) => [name, significant(model.theta[i], 4), ...series.map(([, values]) => (values[i] === null ? "not asked for" : significant(values[i])))]) }),
+      rows: names.map((name, i) => [name, significant(theta[i], 4), ...series.map(([, values]) => (values[i] === null ? "–" : significant(values[i])))]) }),
   });
 }
 

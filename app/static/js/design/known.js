@@ -9,7 +9,7 @@ const STATE = "";
 
 // {element, modelId()}: modelId() keeps a stated model first where there is none.
 export function known(plant, models, chosen = null) {
-  const usable = models.filter((one) => !one.stateSpace && !(one.effects ?? []).length);
+  const usable = models.filter((one) => !one.stateSpace && !one.varying);
   const choices = [...usable.map((one) => [one.id, `${one.name || `${one.origin} model`}, ${moment(one.createdAt)}`]), [STATE, "a first guess, stated here"]];
   const model = select(choices, usable.some((one) => one.id === chosen) ? chosen : choices[0][0]);
   const theta = plant.parameterNames.map((name) => [name, numberInput()]);

@@ -3,19 +3,27 @@
 import { h } from "../dom.js";
 import { field, fields, integerInput, numberInput, numberOf, textInput } from "../forms.js";
 import { hertz, labelled, quantity, radPerSecond, significant } from "../numbers.js";
-import { pluginField } from "../plugin_field.js";
+import { pluginField, words } from "../plugin_field.js";
+import { coefficientNames } from "../structure_fields.js";
+import { detectionFields, discriminationFields } from "./effect_targets.js";
 import { combinations, pointsIn, spread } from "./grids.js";
 
 const QUANTILE_95 = 1.96; // a normal quantity lies within so many standard deviations with 95 % probability
 
-// By kind: (plant, pointer, coefficients, catalogue entry) to {element, value()}.
-const FIELDS = { response_deviation: responseFields, parameter_deviation: parameterFields, local_covariance: coefficientFields };
-const TITLES = { response_deviation: "the frequency response, in per cent", parameter_deviation: "the parameters", local_covariance: "the coefficients at chosen operating points" };
+// By kind: (plant, pointer, catalogue, catalogue entry) to {element, value()}.
+const FIELDS = {
+  response_deviation: responseFields, parameter_deviation: parameterFields, local_covariance: coefficientFields,
+  effect_detection: detectionFields, effect_discrimination: discriminationFields,
+};
+const TITLES = {
+  response_deviation: "the frequency response, in per cent", parameter_deviation: "the parameters", local_covariance: "the coefficients at chosen operating points",
+  effect_detection: "whether a physical effect is there", effect_discrimination: "which of two effects is there",
+};
 
 export const targetTitle = (kind) => TITLES[kind] ?? kind.replaceAll("_", " ");
 
-export function targetFields(entry, plant, coefficients, pointer) {
-  return (FIELDS[entry.kind] ?? otherFields)(plant, pointer, coefficients, entry);
+export function targetFields(entry, plant, catalogue, pointer) {
+  return (FIELDS[entry.kind] ?? otherFields)(plant, pointer, catalogue, entry);
 }
 
 function responseFields(plant, pointer) {
@@ -51,7 +59,8 @@ function parameterFields(plant, pointer) {
   return { element, value: () => ({ kind: "parameter_deviation", standardDeviations: inputs.map(([, input]) => numberOf(input)) }) };
 }
 
-function coefficientFields(plant, pointer, coefficients) {
+function coefficientFields(plant, pointer) {
+  const coefficients = plantCoefficients(coefficientNames(plant.structure));
   const inputs = coefficients.map((name) => [name, numberInput(null, { min: 0 })]);
   const points = textInput("", { placeholder: "separated by semicolons" });
   const names = plant.schedulingVariables.map((one) => labelled(one.name, one.unit)).join(", ");
@@ -67,12 +76,12 @@ function coefficientFields(plant, pointer, coefficients) {
   return { element, value };
 }
 
-function otherFields(plant, pointer, coefficients, entry) {
+function otherFields(plant, pointer, catalogue, entry) {
   return pluginField("kind", [entry], { pointer });
 }
 
 // Which coefficients of the plant belong to its response; those of the noise do not.
-export const plantCoefficients = (names) => names.filter((name) => /^(a|b)\d|^tau/.test(name));
+const plantCoefficients = (names) => names.filter((name) => /^(a|b)\d|^tau/.test(name));
 
 // A target in words.
 export function targetText(target, plant) {
@@ -86,6 +95,9 @@ export function targetText(target, plant) {
     return `standard deviations: ${each.join(", ")}`;
   }
   if (target.kind === "local_covariance") return `covariance of the coefficients at ${target.operatingPoints.length} operating points`;
+  const rates = `with ${significant(100 * target.power)} % power at a level of ${significant(100 * target.level)} %`;
+  if (target.kind === "effect_detection") return `see ${words(target.effect)} of size ${significant(target.amplitude)} ${rates}`;
+  if (target.kind === "effect_discrimination") return `tell ${words(target.effect)} from ${words(target.against)} ${rates}`;
   return targetTitle(target.kind);
 }
 

@@ -2,13 +2,11 @@
 
 import { h, replace } from "../dom.js";
 import { field, select } from "../forms.js";
-import { coefficientNames } from "../structure_fields.js";
-import { plantCoefficients, targetFields, targetTitle } from "./target_fields.js";
+import { targetFields, targetTitle } from "./target_fields.js";
 
-// {element, value()}; `entries`: the targets of the catalogue.
-export function targets(entries, plant) {
-  const ordered = [...entries].sort((a, b) => Number(b.kind === "response_deviation") - Number(a.kind === "response_deviation"));
-  const coefficients = plantCoefficients(coefficientNames(plant.structure));
+// {element, value()}
+export function targets(catalogue, plant) {
+  const ordered = [...catalogue.targets].sort((a, b) => Number(b.kind === "response_deviation") - Number(a.kind === "response_deviation"));
   const place = h("div", { "data-pointer": "/targets" });
   const rows = [];
   const draw = () => replace(place, rows.map((row, index) => element(row, index)));
@@ -16,7 +14,7 @@ export function targets(entries, plant) {
     field("know", row.kind), row.fields.element,
     rows.length > 1 ? h("p", { class: "actions" }, h("button", { type: "button", class: "quiet", onclick: () => remove(index) }, `Remove target ${index + 1}`)) : null);
   const renew = (row, index) => {
-    row.fields = targetFields(entries.find((one) => one.kind === row.kind.value), plant, coefficients, `/targets/${index}`);
+    row.fields = targetFields(catalogue.targets.find((one) => one.kind === row.kind.value), plant, catalogue, `/targets/${index}`);
   };
   const remove = (index) => {
     rows.splice(index, 1);
