@@ -165,6 +165,29 @@ def test_white_excitation_gives_a_model_with_several_inputs_and_outputs(api: Api
     assert np.allclose(np.sort_complex(of_speed), np.sort_complex(np.linalg.eigvals(truth.a[2])), atol=0.05)
 
 
+def test_what_was_kept_of_several_variables_is_the_model_again(api: Api, cox: tuple[Json, list[str]]) -> None:
+    """Compared and simulated, its matrices and their covariance are in the order of the scheduling variables."""
+    plant, records = cox
+    model = identified(api, plant, records, {"kind": "correlation_realisation"})
+    found = api.made("/comparisons", {"modelId": model["id"], "experimentIds": records})
+    assert [one["vafPercent"] > 99.9 for one in found["experiments"]] == [True, True]
+    for part in found["parts"]:
+        assert part["noiseKnown"]
+        assert part["lackOfFit"] is None
+        assert all(test["pValue"] > 1e-3 for test in part["simulationErrors"]), part
+    maps = api.get(f"/comparisons/{found['id']}/maps")
+    assert (
+        [row["outputNumber"] for row in maps["rows"]] == [row["outputNumber"] for row in maps["timeRows"]] == [1, 2] * 2
+    )
+    excitation = {"kind": "experiment", "experimentId": records[1]}
+    made = api.made(f"/models/{model['id']}/simulations", {"excitation": excitation})
+    data = api.get(f"/simulations/{made['id']}/data")
+    u, _, p = varying.white(varying.cox_plant(), 500, 2)
+    error = np.array(data["outputs"]).T - varying.cox_plant().simulate(u, p)
+    deviation = (np.array(data["upper95"]) - np.array(data["lower95"])).T / 2 / 1.96
+    assert 0.2 < np.mean(error[5:] ** 2 / deviation[5:] ** 2) < 3
+
+
 def test_coloured_scheduling_breaks_an_assumption_and_is_said(api: Api, cox: tuple[Json, list[str]]) -> None:
     plant, _ = cox
     u, _, p = varying.white(varying.cox_plant(), 1500, 3)
