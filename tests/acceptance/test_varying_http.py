@@ -1,10 +1,15 @@
 """Experiments in which the scheduling varies, over HTTP: from a record to a model with its accuracy."""
 
+import re
+
 import numpy as np
 import pytest
 
 from app.files import csv_file, mat_writer, npz_file
 from benchmarks.wind_turbine_plant import PLANT
+from identification.affine_estimate import AffineEstimate
+from identification.outcome import Outcome
+from identification.varying.affine_parameters import AffineSizes
 from tests.support import varying
 from tests.support.api import Api, Json
 from tests.support.responses import complex_array
@@ -186,6 +191,22 @@ def test_what_was_kept_of_several_variables_is_the_model_again(api: Api, cox: tu
     error = np.array(data["outputs"]).T - varying.cox_plant().simulate(u, p)
     deviation = (np.array(data["upper95"]) - np.array(data["lower95"])).T / 2 / 1.96
     assert 0.2 < np.mean(error[5:] ** 2 / deviation[5:] ** 2) < 3
+    expected = np.sqrt(np.einsum("tyy->ty", by_names(model).output_covariance(u, p)))
+    assert np.allclose(deviation, expected, rtol=1e-3, atol=1e-9)
+
+
+def by_names(model: Json) -> AffineEstimate:
+    """The model of a document, its parameters put in place by their names: B[0,1](1,2) is of the second variable."""
+    sizes = AffineSizes.of(varying.cox_plant())
+    numbers = sizes.split(np.arange(sizes.size, dtype=float))
+    places = []
+    for name in model["parameterNames"]:
+        letter, label, row, column = re.fullmatch(r"([ABCD])\[([01],[01])\]\((\d),(\d)\)", name).groups()
+        function = {"0,0": 0, "1,0": 1, "0,1": 2}[label]
+        places.append(int(numbers["ABCD".index(letter)][function, int(row) - 1, int(column) - 1]))
+    back = np.argsort(places)
+    covariance = np.array(model["covariance"])[np.ix_(back, back)]
+    return AffineEstimate(sizes.model(np.array(model["theta"])[back], 1.0), Outcome("converged"), (), covariance)
 
 
 def test_coloured_scheduling_breaks_an_assumption_and_is_said(api: Api, cox: tuple[Json, list[str]]) -> None:
