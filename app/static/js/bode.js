@@ -8,15 +8,18 @@ import { colour } from "./theme.js";
 
 const DEGREES = 180 / Math.PI;
 const NORMAL_95 = 1.96;
+const MOST_POINTS = 350;
 
 // curves: [{name, response}] with documents of /frequency-response; points: [{name, frequencies (rad/s), response,
 // deviation or null, hollow}]; misfit: what is left between measured and modelled {frequencies, size, noise or null}, or
 // null; mark: a frequency (rad/s) to point at, or null; unit: of the gain.
 export function bodePlot(place, { curves, points, misfit = null, mark = null, unit = "", caption, height = 460 }) {
   const drawn = { curves: curves.map(curveOf), points: points.map((one) => pointsOf(one, curves[0]?.response)), misfit: misfit && misfitOf(misfit) };
+  const few = { points: drawn.points.map(thinnedOut), misfit: drawn.misfit && thinnedOut(drawn.misfit) };
+  const every = strideOf(drawn.points[0]?.x ?? []);
   return plot(place, {
-    caption, height,
-    draw: () => ({ data: [...drawn.curves.flatMap(curveTraces), ...drawn.points.flatMap((one, i) => pointTraces(one, i + drawn.curves.length)), ...misfitTraces(drawn.misfit)], layout: layout(drawn, mark, unit) }),
+    caption: every > 1 ? `${caption} One in ${every} points is drawn.` : caption, height,
+    draw: () => ({ data: [...drawn.curves.flatMap(curveTraces), ...few.points.flatMap((one, i) => pointTraces(one, i + drawn.curves.length)), ...misfitTraces(few.misfit)], layout: layout(drawn, mark, unit) }),
     table: () => tableOf(drawn, unit),
   });
 }
@@ -47,6 +50,14 @@ function misfitOf({ frequencies, size, noise }) {
   return { x: places.map((i) => hertz(frequencies[i])), size: places.map((i) => size[i]), noise: noise && places.map((i) => noise[i]) };
 }
 
+const strideOf = (values) => Math.ceil(values.length / MOST_POINTS);
+
+// So few points that they can be told apart and are drawn soon; the table has all.
+function thinnedOut(one) {
+  const stride = strideOf(one.x);
+  return Object.fromEntries(Object.entries(one).map(([key, value]) => [key, Array.isArray(value) ? value.filter((_, i) => i % stride === 0) : value]));
+}
+
 function near(phase, model, frequency) {
   if (!model) return phase;
   const { frequenciesRadPerSecond: omega, phaseRad } = model;
@@ -69,9 +80,17 @@ function curveTraces(curve, i) {
 function pointTraces(one, i) {
   const shape = symbol(i) + (one.hollow ? "-open" : "");
   const marker = { symbol: shape, size: one.hollow ? 8 : 5, color: one.hollow ? seriesColour(i) : colour("--ink"), line: { width: 1.2, color: seriesColour(i) } };
-  const error = (values) => values && { type: "data", array: values, thickness: 1, width: 0, color: faded(colour("--quiet"), 0.8) };
   const common = { x: one.x, mode: "markers", name: one.name, legendgroup: `points ${i}`, marker };
-  return [{ ...common, y: one.gain, error_y: error(one.gainError) }, { ...common, y: one.phase, yaxis: "y2", error_y: error(one.phaseError), showlegend: false }];
+  const bars = one.gainError ? [barTrace(one, "gain", "y", i), barTrace(one, "phase", "y2", i)] : [];
+  return [...bars, { ...common, y: one.gain }, { ...common, y: one.phase, yaxis: "y2", showlegend: false }];
+}
+
+// All bars as one line with gaps, which is drawn far sooner than bars of their own.
+function barTrace(one, key, yaxis, i) {
+  const half = one[`${key}Error`];
+  const ends = one[key].flatMap((value, j) => [key === "gain" ? Math.max(value - half[j], value / 100) : value - half[j], value + half[j], null]);
+  const line = { color: faded(colour("--quiet"), 0.8), width: 1 };
+  return { x: one.x.flatMap((x) => [x, x, null]), y: ends, yaxis, mode: "lines", line, hoverinfo: "skip", showlegend: false, legendgroup: `points ${i}` };
 }
 
 function misfitTraces(misfit) {

@@ -102,6 +102,7 @@ export class FieldMap {
   }
 
   #draw() {
+    if (!this.place) return; // not laid out yet; then #resize draws
     drawMap(this.canvas, this);
   }
 }

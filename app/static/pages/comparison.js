@@ -14,6 +14,7 @@ import { runJob } from "../js/jobs.js";
 import { experimentTitle, pointText } from "../js/models/experiments.js";
 import { indexed, titleOf } from "../js/models/versions.js";
 import { moment, significant } from "../js/numbers.js";
+import { loadPlotly } from "../js/plots.js";
 import { showProblem } from "../js/problems.js";
 import { page } from "../js/ready.js";
 import { plant } from "../js/shell.js";
@@ -21,6 +22,7 @@ import { table } from "../js/tables.js";
 
 const at = (rest) => `/plants/${context.plantId}/${rest}`;
 
+loadPlotly(); // while the data come
 page(async () => {
   const [found, comparison, { rows, timeRows }, experiments] = await Promise.all([
     plant, get(`/comparisons/${context.comparisonId}`), get(`/comparisons/${context.comparisonId}/maps`), list("/experiments", { plantId: context.plantId })]);

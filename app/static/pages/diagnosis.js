@@ -13,11 +13,13 @@ import { byId, facts, h, message, replace } from "../js/dom.js";
 import { ratio } from "../js/compare/lack_of_fit.js";
 import { indexed, titleOf } from "../js/models/versions.js";
 import { counted, moment, percent, significant } from "../js/numbers.js";
+import { loadPlotly } from "../js/plots.js";
 import { page } from "../js/ready.js";
 import { plant } from "../js/shell.js";
 
 const at = (rest) => `/plants/${context.plantId}/${rest}`;
 
+loadPlotly(); // while the data come
 page(async () => {
   const query = { plantId: context.plantId };
   const [found, diagnosis, models, experiments] = await Promise.all([plant, get(`/diagnoses/${context.diagnosisId}`), list("/models", query), list("/experiments", query)]);

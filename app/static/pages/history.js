@@ -10,6 +10,7 @@ import { runJob } from "../js/jobs.js";
 import { effectText } from "../js/models/effects.js";
 import { datedTitle, effectsText, indexed, latest, lineage, titleOf } from "../js/models/versions.js";
 import { moment, percent } from "../js/numbers.js";
+import { loadPlotly } from "../js/plots.js";
 import { showProblem } from "../js/problems.js";
 import { page } from "../js/ready.js";
 import { plant } from "../js/shell.js";
@@ -17,6 +18,7 @@ import { table } from "../js/tables.js";
 
 const at = (rest) => `/plants/${context.plantId}/${rest}`;
 
+loadPlotly(); // while the data come
 page(async () => {
   const query = { plantId: context.plantId };
   const [found, models, experiments] = await Promise.all([plant, list("/models", query), list("/experiments", query)]);

@@ -10,6 +10,7 @@ import { provenance } from "../js/models/provenance.js";
 import { ResponseView } from "../js/models/response_view.js";
 import { datedTitle, effectsText, indexed, lineage, titleOf } from "../js/models/versions.js";
 import { counted, probability, significant } from "../js/numbers.js";
+import { loadPlotly } from "../js/plots.js";
 import { page } from "../js/ready.js";
 import { plant } from "../js/shell.js";
 import { structureText } from "../js/structure_fields.js";
@@ -17,6 +18,7 @@ import { table } from "../js/tables.js";
 
 const at = (rest) => `/plants/${context.plantId}/${rest}`;
 
+loadPlotly(); // while the data come
 page(async () => {
   const query = { plantId: context.plantId };
   const [found, model, models, experiments] = await Promise.all([plant, get(`/models/${context.modelId}`), list("/models", query), list("/experiments", query)]);

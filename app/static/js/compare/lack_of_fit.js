@@ -10,6 +10,7 @@ import { colour } from "../theme.js";
 import { nameOf } from "./residual_maps.js";
 
 export const DOUBTFUL = 0.05;
+const MOST_LABELS = 12;
 
 // χ² per degree of freedom; null where nothing is known.
 export function ratio(test) {
@@ -43,7 +44,7 @@ function misfitPlot(place, parts, { where, title, testsOf, order }) {
     height: 300,
     draw: () => ({
       data: given.map(([part, tests], i) => pointTrace(part, tests, categories, i)),
-      layout: { shapes: given.flatMap(([, tests], i) => tests.map((one) => range(one, categories, i))), xaxis: axis(title, { tickvals: categories.map((_, i) => i), ticktext: categories, range: [-0.5, categories.length - 0.5], showgrid: false }), yaxis: logAxis("χ² per degree", [0.5, 2, ...given.flatMap(([, tests]) => tests.map(([, test]) => ratio(test)))]) },
+      layout: { shapes: given.flatMap(([, tests], i) => tests.map((one) => range(one, categories, i))), xaxis: axis(title, { tickvals: categories.map((_, i) => i), ticktext: categories.map((label, i) => (i % Math.ceil(categories.length / MOST_LABELS) ? "" : label)), range: [-0.5, categories.length - 0.5], showgrid: false }), yaxis: logAxis("χ² per degree", [0.5, 2, ...given.flatMap(([, tests]) => tests.map(([, test]) => ratio(test)))]) },
     }),
     table: () => ({ columns: ["where", "data", "χ²", "degrees of freedom", "χ² per degree", "p-value"], textColumns: 2,
       rows: given.flatMap(([part, tests]) => tests.map(([label, test]) => [label, nameOf(part), significant(test.statistic, 4), significant(test.degreesOfFreedom, 4), significant(ratio(test)), probability(test.pValue)])) }),

@@ -18,7 +18,9 @@ export class ResidualMaps {
     this.onChoose = onChoose;
     const top = topOf(rows.map(sizes));
     this.parts = Object.keys(DATA).map((data) => ({ data, rows: rows.filter((row) => row.data === data).sort((a, b) => byPoint(a.operatingPoint, b.operatingPoint)) })).filter((part) => part.rows.length);
-    replace(place, h("div", { class: "columns" }, this.parts.map((part) => this.#draw(part, top))));
+    const columns = h("div", { class: "columns" });
+    replace(place, columns);
+    for (const part of this.parts) this.#draw(columns, part, top);
   }
 
   // The cell that is furthest off.
@@ -45,8 +47,9 @@ export class ResidualMaps {
     return other ? [...other.rows].sort((a, b) => distance(a) - distance(b))[0] : null;
   }
 
-  #draw(part, top) {
+  #draw(columns, part, top) {
     const place = h("section", {}, h("h3", {}, `${part.data === "fitted" ? "Fitted" : "Held out"}: ${counted(part.rows.length, "experiment")}`));
+    columns.append(place);
     const labels = labelsOf(part.rows, this.variables);
     part.map = new FieldMap(place, {
       rows: part.rows.map((row, i) => ({ label: labels[i], frequencies: row.frequenciesRadPerSecond.map(hertz), values: sizes(row) })),
@@ -56,7 +59,6 @@ export class ResidualMaps {
       onChoose: (row, column) => this.#chosen(part, row, column),
       table: () => tableOf(part.rows, labels),
     });
-    return place;
   }
 
   #describe(row, column) {
