@@ -10,7 +10,7 @@ const FINAL = ["succeeded", "failed", "cancelled"];
 export const KINDS = {
   experiment: "Reading an experiment", design: "Designing experiments", signals: "Making signals",
   identification: "Identifying a model", stateSpaceIdentification: "Identifying a state-space model",
-  example: "Making an example", comparison: "Comparing model and measurements", diagnosis: "Looking for what is missing", extension: "Adding an effect", report: "Drawing the report", staircase: "Adding effects until only noise is left",
+  example: "Making an example", measurement: "Playing signals on the simulated plant", comparison: "Comparing model and measurements", diagnosis: "Looking for what is missing", extension: "Adding an effect", report: "Drawing the report", staircase: "Adding effects until only noise is left",
 };
 const STATES = { queued: "waiting", running: "running", succeeded: "done", failed: "failed", cancelled: "cancelled" };
 

@@ -10,13 +10,16 @@ import { table } from "../tables.js";
 import { energyUnit } from "./spectra.js";
 
 export async function drawSignals(place, plant, design) {
-  const made = (await list("/signals", { plantId: plant.id }, 500)).filter((one) => one.designId === design.id);
-  const listed = h("div", {}, made.map((one) => signalTable(one, plant)));
+  const [signals, examples] = await Promise.all([list("/signals", { plantId: plant.id }, 500), list("/examples")]);
+  const example = examples.find((one) => one.plantId === plant.id) ?? null;
   const progress = h("div", {});
-  replace(place, h("h2", {}, "Signals to play"), form(plant, design, progress, listed), progress, listed);
+  const listed = h("div", {});
+  const add = (made) => listed.prepend(h("div", {}, signalTable(made, plant), example && playButton(example, made, progress)));
+  signals.filter((one) => one.designId === design.id).reverse().forEach(add);
+  replace(place, h("h2", {}, "Signals to play"), form(plant, design, progress, add), progress, listed);
 }
 
-function form(plant, design, progress, listed) {
+function form(plant, design, progress, add) {
   const method = select([["multisine", "multisine: exactly the designed lines"], ["filtered_noise", "noise with the designed spectrum"]], "multisine");
   const [periods, samples, seed, oversampling] = [integerInput(null, { min: 1 }), integerInput(null, { min: 2 }), integerInput(0, { min: 0 }), integerInput(1, { min: 1, max: 16 })];
   const limit = numberInput(null, { min: 0 });
@@ -32,13 +35,28 @@ function form(plant, design, progress, listed) {
     const body = { method: method.value, periods: numberOf(periods), samples: numberOf(samples), amplitudeLimit: numberOf(limit), oversampling: numberOf(oversampling), seed: numberOf(seed) };
     try {
       const { href } = await runJob(`/designs/${design.id}/signals`, body, progress);
-      listed.prepend(signalTable(await get(href), plant));
+      add(await get(href));
     } catch (problem) {
       if (!problem.title) throw problem;
       showProblem(problem, { place: progress, form: element });
     }
   };
   return element;
+}
+
+// For a simulated plant: what playing the signals would measure becomes experiments.
+function playButton(example, made, progress) {
+  const play = async () => {
+    try {
+      const seed = crypto.getRandomValues(new Uint32Array(1))[0];
+      await runJob(`/examples/${example.id}/measurements`, { signalsId: made.id, seed }, progress);
+      location.href = `/plants/${example.plantId}/experiments`;
+    } catch (problem) {
+      if (!problem.title) throw problem;
+      showProblem(problem, { place: progress });
+    }
+  };
+  return h("p", { class: "actions" }, submitButton("Play them on the simulated plant", play));
 }
 
 function signalTable(made, plant) {
