@@ -126,6 +126,10 @@ def _saturated(y: FloatArray, periods: int) -> float:
     return max(ends - periods, 0) / len(y)
 
 
+def _first(numbers: list[int]) -> int:
+    return numbers[0] if numbers else 0
+
+
 def _warnings(
     record: VaryingRecord, period: int | None, steady: SteadyPeriods | None, reason: str, saturated: float
 ) -> tuple[str, ...]:
@@ -134,8 +138,8 @@ def _warnings(
     few = steady is not None and len(steady.output) < 3
     checks = (
         (bool(reason), f"No steady periods: {reason}. Methods that need no period can still be used."),
-        (bool(still), f"Scheduling signal {still[:1]} does not vary: what depends on it cannot be seen; vary it."),
-        (bool(constant), f"Input {constant[:1]} is constant: only the gain at frequency zero can be seen."),
+        (bool(still), f"Scheduling signal {_first(still)} does not vary: what depends on it cannot be seen; vary it."),
+        (bool(constant), f"Input {_first(constant)} is constant: only the gain at frequency zero can be seen."),
         (few, "There are fewer than three steady periods, so the noise is hardly seen; record more periods."),
         (
             steady is not None and steady.dropped > 0,
