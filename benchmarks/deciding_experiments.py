@@ -3,7 +3,8 @@
 For each pair an ambiguous first experiment on the virtual bench: something is missing, either effect may be it, and
 neither has more than 95 % of the weight. Then, at no more energy than the first took, a second one: designed to tell
 the two apart, the first repeated, or points, levels and bands drawn at random. Counted is how often the diagnosis of
-both experiments together gives the hidden effect more than 95 % of the weight, and how often the other one.
+both experiments together gives the hidden effect more than 95 % of the weight, and how often another one. With
+--library every effect of the library may be it, and the design tells the likeliest from all that were announced.
 """
 
 import argparse
@@ -22,6 +23,7 @@ from benchmarks.virtual_bench.study import MODEL, strengths
 from identification.comparison.batch import Batch
 from identification.comparison.gather import gather
 from identification.diagnosis.diagnose import Diagnosis, diagnose
+from identification.effects.library import library
 from identification.extension.model import ExtendedModel
 from identification.signals import TimeRecord
 from oed.budget import within_energy
@@ -32,7 +34,7 @@ from oed.suspects import known
 from oed.targets.effect_discrimination import EffectDiscrimination
 
 POINTS = np.linspace(-1, 1, 5)
-PERIODS, MOST_PERIODS, DRAWS = 4, 32, 200
+PERIODS, MOST_PERIODS, DRAWS, MOST_RIVALS = 4, 32, 200, 3
 NYQUIST = np.pi / SAMPLE_TIME
 STRATEGIES = ("designed", "repeated", "random")
 
@@ -56,6 +58,7 @@ class Pair:
     bands: tuple[tuple[float, float], ...] = ()
     share: float = 0.75
     hidden: int = 2
+    library: bool = False
 
 
 def _windows(width: float) -> tuple[tuple[float, float], ...]:
@@ -83,7 +86,9 @@ def first_experiment(pair: Pair) -> list[Played]:
 
 
 def diagnosed(pair: Pair, batches: Sequence[Batch], seed: int) -> Diagnosis:
-    """Which of the two it is, if one of them."""
+    """Which of the two it is, if one of them; or which of the whole library."""
+    if pair.library:
+        return diagnose(MODEL, batches, [one for one in library() if not one.of_measurements], seed=seed)
     return diagnose(MODEL, batches, [known(kind, "effect") for kind in pair.effects], seed=seed)
 
 
@@ -93,8 +98,8 @@ def decided(found: Diagnosis) -> str:
 
 
 def ambiguous(found: Diagnosis) -> bool:
-    """Whether something is missing, both effects may be it, and none has more than 95 % of the weight."""
-    return len(found.announced) == 2 and found.announced[0].weight <= 0.95
+    """Whether something is missing, several effects may be it, and none has more than 95 % of the weight."""
+    return len(found.announced) >= 2 and found.announced[0].weight <= 0.95
 
 
 def family_of(pair: Pair) -> Multisines:
@@ -103,15 +108,13 @@ def family_of(pair: Pair) -> Multisines:
 
 
 def designed(pair: Pair, found: Diagnosis, batches: tuple[Batch, ...], budget: float) -> list[Played]:
-    """The experiments that tell the likelier effect from the other one best, both ways, after what is known."""
-    assert found.best is not None
-    likelier = found.best.score.candidate.effect.kind
-    other = next(kind for kind in pair.effects if kind != likelier)
+    """The experiments that tell the likeliest effect from the others best, both ways, after what is known."""
+    likeliest, *others = dict.fromkeys(one.score.candidate.effect.kind for one in found.announced)
     model = replace(found.base.model.base, noise_variance=sample_noise_variance(batches[0]))
     problem = DesignProblem(
         ExtendedModel(model),
         POINTS[:, None],
-        (EffectDiscrimination(likelier, other),),
+        tuple(EffectDiscrimination(likeliest, other) for other in others[:MOST_RIVALS]),
         family_of(pair),
         MOST_PERIODS * PERIOD,
         sample_time=SAMPLE_TIME,
@@ -154,10 +157,10 @@ def begun_ambiguously(
     raise RuntimeError(f"{DRAWS} first experiments with {truth} hidden, and none was ambiguous")
 
 
-def one_run(task: tuple[int, str, int]) -> dict[str, Any]:
+def one_run(task: tuple[int, str, int, bool]) -> dict[str, Any]:
     """An ambiguous first experiment, and what each strategy makes of it."""
-    number, truth, seed = task
-    pair = PAIRS[number]
+    number, truth, seed, whole = task
+    pair = replace(PAIRS[number], library=whole)
     generator = np.random.default_rng([number, pair.effects.index(truth), seed])
     first = first_experiment(pair)
     tried, begun, batches, found = begun_ambiguously(pair, truth, first, generator)
@@ -231,12 +234,14 @@ def main() -> None:
     parser.add_argument("--runs", type=int, default=50, help="for each pair, the two effects hidden in turn")
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--pair", type=int, default=None)
+    parser.add_argument("--library", action="store_true", help="judge by the whole library of effects")
     parser.add_argument("--output", type=Path, default=None)
     parser.add_argument("--page", type=Path, default=None)
     options = parser.parse_args()
     strengths()
     chosen = range(len(PAIRS)) if options.pair is None else [options.pair]
-    tasks = [(n, PAIRS[n].effects[r % PAIRS[n].hidden], r) for n in chosen for r in range(options.runs)]
+    every = [(n, r) for n in chosen for r in range(options.runs)]
+    tasks = [(n, PAIRS[n].effects[r % PAIRS[n].hidden], r, options.library) for n, r in every]
     runs = over(one_run, tasks, options.workers)
     table = summary(runs)
     for pair, rows in table.items():

@@ -21,7 +21,7 @@ def test_a_cubic_stiffness_is_seen_as_often_as_designed() -> None:
 
 def test_a_designed_experiment_decides_what_the_first_left_open() -> None:
     stiffness, sensor = PAIRS[1].effects
-    runs = [one_run((1, stiffness, 0)), one_run((1, sensor, 0))]
+    runs = [one_run((1, stiffness, 0, False)), one_run((1, sensor, 0, False))]
     table = summary(runs)[" / ".join(PAIRS[1].effects)]
     assert table["designed"]["right"] == 1.0
     assert table["designed"]["energy over budget"] <= 1.0
