@@ -21,6 +21,8 @@ from oed.spectra.multisines import MultisinePricing, Multisines
 from oed.statement import Statement, stated
 from oed.whole_periods import whole_periods
 
+COVERED = 1e-9
+
 
 @dataclass(frozen=True, eq=False)
 class DesignedExperiment:
@@ -99,12 +101,11 @@ def design(problem: DesignProblem, progress: Progress | None = None) -> Design:
 def designed(problem: DesignProblem, statement: Statement, progress: Progress | None = None) -> Design:
     """The design of a problem whose matrices are known."""
     k = statement.plant
-    missing = statement.targets[:, :k, :k] - statement.prior[:k, :k]
-    largest = abs(statement.targets[:, :k, :k]).max(axis=(1, 2), initial=1e-300)
-    open_targets = np.flatnonzero(np.linalg.eigvalsh(missing)[:, -1] > 1e-9 * largest)
+    targets, prior = statement.targets[:, :k, :k], statement.prior[:k, :k]
+    open_targets = _unmet(targets, prior)
     if len(open_targets) == 0:
         return _described(problem, statement, _Found((), 0.0, 0.0, 0.0, np.zeros((k, k)), (), 0))
-    problem_scaled = scaled(problem, statement, missing[open_targets])
+    problem_scaled = scaled(problem, statement, targets[open_targets] - prior)
     if isinstance(problem_scaled, Outcome):
         return _unreachable(problem, problem_scaled)
     solution, problem_scaled = _solved(problem_scaled, progress)
@@ -114,6 +115,14 @@ def designed(problem: DesignProblem, statement: Statement, progress: Progress | 
         advice = "the solver found no spectra that meet the targets; relax the narrowest of the targets or the caps"
         return _unreachable(problem, Outcome("not_converged", advice, solution.iterations))
     return _described(problem, statement, _found(problem_scaled, solution, open_targets))
+
+
+def _unmet(targets: FloatArray, prior: FloatArray) -> IntArray:
+    """The targets R_j that prior information does not cover, whatever the units of the parameters."""
+    size = np.sqrt(np.diagonal(targets, axis1=1, axis2=2) + np.diagonal(prior))
+    unit = 1 / np.where(size > 0, size, 1.0)
+    missing = (targets - prior) * unit[:, :, None] * unit[:, None, :]
+    return np.flatnonzero(np.linalg.eigvalsh(missing)[:, -1] > COVERED)
 
 
 def _found(problem: ScaledProblem, solution: CertifiedSpectra, open_targets: IntArray) -> _Found:

@@ -125,6 +125,14 @@ def test_the_designed_distance_is_what_is_left_after_the_best_imitation() -> Non
     assert distance(np.zeros(5)) > 2 * least
 
 
+def test_what_is_known_of_one_parameter_does_not_hide_what_is_missing_of_another() -> None:
+    """In units that make the information about the first ten orders larger."""
+    target = ParameterDeviation((1e-5, 1.0, None, None))
+    found = design(problem(target, prior_information=np.diag([1.001e10, 0.0, 0.0, 0.0])))
+    assert found.experiments
+    assert not design(problem(target, prior_information=np.diag([1.001e10, 2.0, 0.0, 0.0]))).experiments
+
+
 def test_both_ways_are_decided() -> None:
     result = design(problem(EffectDiscrimination("delay", "lag", 0.06)))
     assert [(one.demand.kind, one.demand.against) for _, one in result.decisions] == [
