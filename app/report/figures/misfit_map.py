@@ -46,7 +46,7 @@ class MapRow:
             middle = np.sqrt(edges[i] * edges[i + 1])
             nearest = int(np.argmin(abs(frequencies - middle)))
             gap = np.diff(frequencies)[max(nearest - 1, 0) : nearest + 1].max(initial=0.0)
-            if abs(frequencies[nearest] - middle) <= gap:
+            if abs(frequencies[nearest] - middle) <= gap / 2:
                 values[i] = np.sqrt(power[nearest])
         return np.asarray(values)
 

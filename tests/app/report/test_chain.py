@@ -127,3 +127,15 @@ def test_the_map_is_bright_where_the_residual_is_large() -> None:
             cell = int(np.nanargmax(values))
             assert heat.x[cell] <= where <= heat.x[cell + 1]
     assert plot.table.rows[0][:2] == ("at 50", "fitted")
+
+
+def test_a_cell_holds_the_root_mean_square_and_one_between_lines_its_nearest() -> None:
+    bright = row(50.0)
+    values = bright.cells(True, np.array([0.2, 0.5, 5.5, 6.9, 47.5, 52.5]))
+    np.testing.assert_allclose(values[[1, 3]], 1.0)
+    assert np.isnan(values[0])
+    excited = (bright.classes == 0) & (bright.frequencies > 47.5) & (bright.frequencies < 52.5)
+    count = int(excited.sum())
+    assert values[4] == pytest.approx(np.sqrt((25 + count - 1) / count))
+    between = MapRow("", False, np.array([1.0, 3.0, 5.0]), np.array([1.0, 2.0, 3.0]) + 0j, np.zeros(3, dtype=int))
+    np.testing.assert_allclose(between.cells(True, np.array([0.9, 1.5, 1.9, 4.4, 4.9])), [1.0, 1.0, 2.0, 3.0])
