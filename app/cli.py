@@ -41,11 +41,11 @@ def design(file: RequestFile, output: Output = None) -> None:
 
 
 @application.command()
-def identify(file: RequestFile, output: Output = None) -> None:
+def identify(file: RequestFile, output: Output = None, report: Report = None) -> None:
     """Identify a model without a server; FILE has plant, experiments (data or data files) and model."""
     from app.offline.commands import identify as run
 
-    run(file, output or file.with_name(f"{file.stem}-identified"))
+    run(file, output or file.with_name(f"{file.stem}-identified"), report)
 
 
 @application.command()

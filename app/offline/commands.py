@@ -8,6 +8,7 @@ from app.offline import results
 from app.offline.documents import checked, load, section
 from app.offline.experiments import experiments_of
 from app.offline.explained import explained
+from app.offline.loop import Loop
 from app.offline.subjects import model_in, plant_in
 from app.offline.workplace import DESIGN_ID, MODEL_ID, PLANT_ID, Workplace, stored, workplace
 from app.schemas.designs import Design, DesignRequest
@@ -20,7 +21,7 @@ from app.services import designs, models, signals, state_space_models
 
 
 @explained
-def identify(file: Path, output: Path) -> None:
+def identify(file: Path, output: Path, report: Path | None = None) -> None:
     """Identify a model from the experiments in a request file."""
     content = load(file)
     plant = plant_in(content)
@@ -34,8 +35,10 @@ def identify(file: Path, output: Path) -> None:
         request = checked(kind, asked, "/model")
         chosen = [by_name[name] for name in request.experiment_ids if name in by_name]
         found = place.run(*_identification(plant, request, chosen))
-    model = Model.model_validate(stored(found.document, MODEL_ID, plantId=PLANT_ID, jobId=None))
-    results.write_model(output, model, [experiment for experiment, _ in chosen])
+        model = Model.model_validate(stored(found.document, MODEL_ID, plantId=PLANT_ID, jobId=None))
+        results.write_model(output, model, [experiment for experiment, _ in chosen])
+        if report is not None:
+            results.write_report(report, Loop(place, plant, tuple(chosen)).chain([model], [], []))
 
 
 @explained

@@ -30,8 +30,11 @@ class LinearResponse:
 def linear_response(model: ExtendedModel, points: ArrayLike, omega: FloatArray) -> LinearResponse:
     """G(p, ω) at points (M, s) and ω (F,): exact with effects that act linearly, else that of the linear core.
 
-    The covariance is J P Jᵀ, to first order in the joint covariance P of all parameters.
+    The covariance is J P Jᵀ, to first order in the joint covariance P of all parameters; without effects P_θ.
     """
+    if not model.effects and model.covariance is None:
+        size = model.base.plant_size
+        model = replace(model, covariance=model.base.covariance[:size, :size])
     held = [_acts_linearly(one.effect) for one in model.effects]
     left_out = tuple(one.effect for one, kept in zip(model.effects, held, strict=True) if not kept)
     kept = _with_only(model, held)

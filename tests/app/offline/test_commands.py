@@ -16,8 +16,8 @@ from tests.support.paper import DEVIATIONS, GRID, NOISE_VARIANCE, PLANT, THETA, 
 RUNNER = CliRunner()
 
 
-def run(command: str, file: Path) -> tuple[int, str]:
-    result = RUNNER.invoke(application, [command, str(file), "--output", str(file.parent / "results")])
+def run(command: str, file: Path, *options: str) -> tuple[int, str]:
+    result = RUNNER.invoke(application, [command, str(file), "--output", str(file.parent / "results"), *options])
     assert result.exception is None or isinstance(result.exception, SystemExit), result.exception
     return result.exit_code, result.output + result.stderr
 
@@ -63,8 +63,9 @@ def test_identify_reads_files_and_design_takes_its_model(tmp_path: Path, designi
     estimators = {"localEstimator": {"kind": "prediction_error"}, "lpvEstimator": {"kind": "joint_likelihood"}}
     file = tmp_path / "measured.json"
     file.write_text(json.dumps({"plant": PLANT, "experiments": experiments, "model": estimators}))
-    code, output = run("identify", file)
+    code, output = run("identify", file, "--report", str(tmp_path / "report.html"))
     assert code == 0, output
+    assert "Version 1: identified" in (tmp_path / "report.html").read_text()
     model = json.loads((tmp_path / "results" / "model.json").read_text())
     np.testing.assert_array_less(abs(np.array(model["theta"]) - THETA), 5 * np.array(model["standardDeviations"]))
     assert model["experimentIds"] == ["experiment1", "experiment2", "experiment3", "experiment4"]

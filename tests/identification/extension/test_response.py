@@ -1,5 +1,7 @@
 """The frequency response of models with effects against formulas and differences."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -83,3 +85,10 @@ def test_without_a_covariance_there_is_none() -> None:
     assert linear_response(model, POINTS, OMEGA).response == pytest.approx(
         linear_response(carrying((Delay(), 0.02)), POINTS, OMEGA).response
     )
+
+
+def test_without_effects_it_is_the_response_of_the_model_itself() -> None:
+    known = replace(BASE, covariance=np.diag([0.01, 0.2, 0.1, 0.003]))
+    found = linear_response(ExtendedModel(known), POINTS, OMEGA)
+    np.testing.assert_allclose(found.response, known.frequency_response(POINTS, OMEGA))
+    np.testing.assert_allclose(found.covariance, known.response_covariance(POINTS, OMEGA), atol=1e-18)
