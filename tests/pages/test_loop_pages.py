@@ -108,7 +108,9 @@ def test_a_model_says_where_it_came_from(visit: Visit, known: Json, server: Serv
     assert float(first.split("± ")[1]) == pytest.approx(model["standardDeviations"][0], rel=0.05)
     assert "rational fit" in page.locator("#provenance").inner_text()
     page.get_by_text("Its 3 experiments").click()
-    assert page.locator("#provenance tbody").last.get_by_role("link").count() == len(POINTS)
+    links = page.locator("#provenance details").get_by_role("link")
+    links.nth(len(POINTS) - 1).wait_for()
+    assert links.count() == len(POINTS)
 
 
 def test_what_cannot_be_told_apart_is_decided_by_a_design(visit: Visit, server: Server) -> None:
