@@ -17,7 +17,7 @@ from oed.information import noise_information, require_stable
 from oed.problem import DesignProblem
 from oed.scaling import ScaledProblem, scaled
 from oed.spectra.family import Spectrum
-from oed.spectra.multisines import MultisinePricing, Multisines
+from oed.spectra.multisines import MultisinePricing, Multisines, MultisineSpectrum
 from oed.statement import Statement, stated
 from oed.whole_periods import whole_periods
 
@@ -193,10 +193,11 @@ def _described(problem: DesignProblem, statement: Statement, found: _Found) -> D
     samples = max(problem.samples, int(np.floor(needed)) + 1) if np.isfinite(needed) else problem.samples
     information = statement.prior.copy()
     information[:k, :k] += found.learnt
-    information[k:, k:] += samples * per_sample.sum(axis=0)
+    lengths = np.array([_length(one.spectrum, samples) for one in found.experiments])
+    information[k:, k:] += np.tensordot(lengths, per_sample, axes=1)
     own = np.ix_(statement.own, statement.own)
     return Design(
-        _outcome(problem, gap, found.iterations)
+        _too_short(_outcome(problem, gap, found.iterations), information[k:, k:], statement.targets[:, k:, k:])
         if np.isfinite(needed)
         else _noise_undetermined(problem, per_sample.sum(axis=0), noise_targets),
         found.experiments,
@@ -210,6 +211,19 @@ def _described(problem: DesignProblem, statement: Statement, found: _Found) -> D
         found.binding,
         statement.decisions(information),
     )
+
+
+def _length(spectrum: Spectrum, samples: int) -> int:
+    return spectrum.periods * spectrum.samples if isinstance(spectrum, MultisineSpectrum) else samples
+
+
+def _too_short(outcome: Outcome, information: FloatArray, targets: FloatArray) -> Outcome:
+    """The outcome, unless so many whole periods tell too little about the noise model."""
+    slack = np.linalg.eigvalsh(information - targets)
+    if slack.size == 0 or np.all(slack[:, 0] >= -1e-9 * np.trace(information)):
+        return outcome
+    advice = "the designed periods are too short for the noise model; record without input as well"
+    return Outcome("infeasible", advice, outcome.iterations)
 
 
 def _covariance(information: FloatArray, k: int) -> FloatArray:

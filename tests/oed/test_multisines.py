@@ -11,12 +11,14 @@ from identification.effects.quadratic_stiffness import QuadraticStiffness
 from identification.errors import MisuseError, RangeError
 from identification.extension.model import ExtendedModel, placed
 from oed.design import Design, design
+from oed.information import noise_information
 from oed.problem import DesignProblem
 from oed.spectra.multisines import MultisinePricing, Multisines, MultisineSpectrum
 from oed.statement import stated
 from oed.targets.effect_detection import EffectDetection
 from oed.targets.parameter_deviation import ParameterDeviation
 from tests.support.oscillators import MODEL, SAMPLE_TIME
+from tests.support.random_models import paper_model
 
 PLANT = ExtendedModel(replace(MODEL.base, noise_variance=1e-4))
 POINTS = np.linspace(-1, 1, 3)[:, None]
@@ -117,6 +119,18 @@ def test_caps_and_duration_leave_candidates_out() -> None:
     short = design(problem(EffectDetection("cubic_stiffness", 1e-5), samples=256))
     assert short.outcome.status == "infeasible"
     assert "levels" in short.outcome.advice
+
+
+def test_the_noise_model_is_learnt_as_long_as_is_played() -> None:
+    model, points = paper_model(noise_variance=1e-4), np.array([[0.0], [4.0], [8.0]])
+    family = Multisines(64, (1.0, 4.0))
+    for deviation, status in ((0.3, "converged"), (1e-4, "infeasible")):
+        target = ParameterDeviation((0.02, 0.01, 0.2, 0.1, deviation, deviation))
+        found = design(DesignProblem(model, points, (target,), family, 64_000))
+        assert found.outcome.status == status
+        played = zip(found.experiments, 64 * _periods(found), strict=True)
+        known = [length * noise_information(model, [one.operating_point])[0] for one, length in played]
+        assert np.linalg.inv(found.expected_covariance[4:, 4:]) == pytest.approx(np.sum(known, axis=0), rel=1e-6)
 
 
 def test_levels_at_which_there_is_no_steady_state_are_left_out() -> None:
