@@ -140,7 +140,7 @@ def test_any_estimator_may_start_the_likelihood(api: Api, plant: Json, records: 
 @pytest.fixture(scope="module")
 def cox(api: Api) -> tuple[Json, list[str]]:
     plant = api.post("/plants", varying.COX)
-    signals = [varying.white(varying.cox_plant(), count, seed) for count, seed in ((2000, 1), (500, 2))]
+    signals = [varying.white(varying.cox_plant(), count, seed) for count, seed in ((1000, 1), (500, 2))]
     return plant, [api.made("/experiments", varying.body(plant, one))["id"] for one in signals]
 
 
@@ -211,7 +211,7 @@ def by_names(model: Json) -> AffineEstimate:
 
 def test_coloured_scheduling_breaks_an_assumption_and_is_said(api: Api, cox: tuple[Json, list[str]]) -> None:
     plant, _ = cox
-    u, _, p = varying.white(varying.cox_plant(), 1500, 3)
+    u, _, p = varying.white(varying.cox_plant(), 1000, 3)
     slow = 0.9 * p + np.roll(p, 1, axis=0)
     signals = varying.measured(varying.cox_plant(), u, slow / abs(slow).max(), 0.02, np.random.default_rng(3))
     record = api.made("/experiments", varying.body(plant, signals))["id"]
