@@ -9,6 +9,7 @@ import numpy as np
 from identification.comparison.batch import EXCITED, Batch
 from identification.diagnosis.diagnose import STRICT, Diagnosis, diagnose
 from identification.effects.library import library
+from identification.effects.misplaced_point import MisplacedPoint
 from identification.extension.fit import Fit, fit
 from identification.extension.model import ExtendedModel
 from identification.places.place import Effect
@@ -58,9 +59,9 @@ def staircase(
 ) -> tuple[Step, ...]:
     """Diagnose, add the announced effect of most weight, fit θ and all effects together, and again.
 
-    Effects on signals are added once: several of one kind would only imitate a curve that is not in the library. Ends
-    at the noise floor (no effect is announced), after `largest` effects, or when an effect would raise the error
-    on held-out data.
+    Effects on signals and misplaced points are added once: several would only imitate a curve that is not in the
+    library. Ends at the noise floor (no effect is announced), after `largest` effects, or when an effect would raise
+    the error on held-out data.
     """
     current = diagnose(model, batches, effects, degree, seed)
     steps = [_step(current.base, batches, held_out, current)]
@@ -80,7 +81,8 @@ def refined(found: Fit) -> Fit:
 
 
 def _left(model: ExtendedModel, effects: Sequence[Effect] | None) -> tuple[Effect, ...]:
-    there = {one.effect.kind for one in model.effects if one.effect.needs_records}
+    once = [one.effect for one in model.effects if one.effect.needs_records or isinstance(one.effect, MisplacedPoint)]
+    there = {one.kind for one in once}
     return tuple(one for one in (library() if effects is None else effects) if one.kind not in there)
 
 

@@ -14,6 +14,7 @@ from identification.effects.hysteresis import Hysteresis
 from identification.effects.inductance import Inductance
 from identification.effects.lag import Lag
 from identification.effects.library import library
+from identification.effects.misplaced_point import MisplacedPoint
 from identification.effects.quadratic_sensor import QuadraticSensor
 from identification.extension.fit import fit
 from identification.extension.rows import Rows
@@ -187,6 +188,16 @@ def test_two_effects_are_found_one_after_the_other():
     assert errors == sorted(errors, reverse=True)
     assert conclusion(steps) == "explained"
     assert steps[-1].diagnosis.lack_of_fit.p_value > 1e-3
+
+
+def test_several_misplaced_points_do_not_stand_in_for_another_dependence():
+    g = np.random.default_rng(12)
+    inputs = [phasors(g) for _ in POINTS]
+    bent = [(a, linear(p + 0.06 * (p * p - 0.5), a)) for p, a in zip(POINTS, inputs, strict=True)]
+    data = gather(records(bent, g, 1e-3))
+    steps = staircase(MODEL, data, effects=(MisplacedPoint(), Delay()), largest=3)
+    assert [one.effect.kind for one in steps[-1].model.effects].count("misplaced_point") == 1
+    assert conclusion(steps) == "not in the library"
 
 
 def test_the_same_seed_gives_the_same_answer():
