@@ -23,7 +23,7 @@ def demo_report(story: Story) -> Report:
         story.chain,
         "A positioning stage: designed, measured, found wanting, mended",
         "A simulated stage that does something its model does not know, walked round the loop of lpv-oed: a first"
-        " experiment, a designed second one with a certificate, a model as accurate as asked that fails all the same,"
+        " experiment, a designed second one with a certificate, a model whose stated accuracy speaks of noise alone,"
         " the effect that it lacks, and what is left when that is added.",
         (_asked(), _energy(story), _reached(story)),
     )

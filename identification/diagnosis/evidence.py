@@ -14,6 +14,7 @@ from identification.places.simulate import NoSteadyStateError
 
 SHORT_LIST = 8
 STARTS = 2
+SHARES = (1.0, 0.3, 0.1)
 LIKELY = 6.0
 ALIKE = 2.0
 HOPELESS = 60.0
@@ -136,17 +137,20 @@ def _starts(base: Fit, score: Score) -> list[int]:
 
 
 def _attempt(base: Fit, score: Score, variant: int, hopeless: float) -> Fit | None:
+    """From the amplitudes that the score points to, or smaller ones; None unless it explains more than the base."""
     signature = score.candidate.signatures[variant]
     amplitudes = signature.amplitudes(base.residual)
     bound = signature.placed.effect.largest
     if bound is not None:
         amplitudes = np.clip(amplitudes, -bound, bound)
-    for share in (1.0, 0.3):
+    for share in SHARES:
         start = replace(signature.placed, coefficients=_signed(signature.placed, share * amplitudes))
         try:
-            return fit(base.model.plus(start), base.rows, iterations=12, tolerance=0.05, hopeless=hopeless)
+            found = fit(base.model.plus(start), base.rows, iterations=12, tolerance=0.05, hopeless=hopeless)
         except NoSteadyStateError:
             continue
+        if found.cost < base.cost:
+            return found
     return None
 
 

@@ -73,7 +73,8 @@ def _grown(base: Fit, effect: Effect, request: ExtensionRequest) -> Fit:
     refitted = refit_short_list(base, scores)
     if not refitted:
         raise MisuseError(
-            f"{effect.title}: fitted to these experiments it leaves its physical range; it is not what is missing",
+            f"{effect.title}: fitted to these experiments it explains nothing or leaves its physical range; it is not"
+            " what is missing",
             "effects",
         )
     return refined(refitted[0].fit)
