@@ -9,7 +9,6 @@ import pytest
 
 from identification.arrays import ComplexArray, FloatArray
 from tests.support.api import Api, Json
-from tests.support.server import Server
 
 DATA = Path(__file__).resolve().parents[3] / "shared" / "data" / "eis_battery_13_states_of_charge"
 SCALE = 50.0
@@ -28,11 +27,6 @@ def spectra() -> Spectra:
             impedance = complex(float(row["Zre_ohm"]), float(row["Zim_ohm"]))
             rows[float(row["soc_pct"])].append((2 * np.pi * float(row["freq_Hz"]), impedance))
     return {soc: (np.array([w for w, _ in some]), np.array([z for _, z in some])) for soc, some in rows.items()}
-
-
-@pytest.fixture(scope="module")
-def api(server: Server) -> Api:
-    return Api(server.url)
 
 
 @pytest.fixture(scope="module")

@@ -5,16 +5,10 @@ import pytest
 
 from tests.support.api import Api, JobFailedError, Json, pointers
 from tests.support.hidden_plant import PERIOD, PLANT, SAMPLE_TIME
-from tests.support.server import Server
 
 POINTS = [-1.0, 0.0, 1.0]
 THETA = [1.8, 64.0, 28.0, 1.0]
 DELAY, SIGMA, LEVEL = 0.008, 0.05, 20.0
-
-
-@pytest.fixture(scope="module")
-def api(server: Server) -> Api:
-    return Api(server.url)
 
 
 @pytest.fixture(scope="module")

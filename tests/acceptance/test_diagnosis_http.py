@@ -8,7 +8,6 @@ import pytest
 
 from tests.support.api import Api, JobFailedError, Json, pointers
 from tests.support.hidden_plant import PLANT, HiddenPlant
-from tests.support.server import Server
 
 CUBIC = 6.0
 FITTED = [-1.0, -0.6, -0.2, 0.2, 0.6, 1.0]
@@ -19,11 +18,6 @@ IDENTIFICATION = {
     "lpvEstimator": {"kind": "generalised_least_squares"},
     "spectralEstimator": {"kind": "periodic_average"},
 }
-
-
-@pytest.fixture(scope="module")
-def api(server: Server) -> Api:
-    return Api(server.url)
 
 
 @pytest.fixture(scope="module")

@@ -3,18 +3,12 @@
 import pytest
 
 from tests.support.api import Api, Json, pointers
-from tests.support.server import Server
 
 IDENTIFICATION = {
     "localEstimator": {"kind": "rational_fit"},
     "lpvEstimator": {"kind": "generalised_least_squares"},
     "spectralEstimator": {"kind": "periodic_average"},
 }
-
-
-@pytest.fixture(scope="module")
-def api(server: Server) -> Api:
-    return Api(server.url)
 
 
 @pytest.fixture(scope="module")

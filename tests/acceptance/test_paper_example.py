@@ -4,12 +4,6 @@ import pytest
 
 from tests.support.api import Api, Json
 from tests.support.paper import BOX, FIGURES, LINES, Figure, energies, prepared
-from tests.support.server import Server
-
-
-@pytest.fixture(scope="module")
-def api(server: Server) -> Api:
-    return Api(server.url)
 
 
 @pytest.fixture(scope="module")

@@ -8,12 +8,6 @@ import pytest
 from tests.acceptance.test_example import IDENTIFICATION
 from tests.support import responses, varying
 from tests.support.api import Api, Json
-from tests.support.server import Server
-
-
-@pytest.fixture(scope="module")
-def api(server: Server) -> Api:
-    return Api(server.url)
 
 
 @pytest.fixture(scope="module")

@@ -6,12 +6,6 @@ import pytest
 from benchmarks.wind_turbine_plant import PLANT
 from tests.support import paper, responses, varying
 from tests.support.api import Api, JobFailedError, Json, pointers
-from tests.support.server import Server
-
-
-@pytest.fixture(scope="module")
-def api(server: Server) -> Api:
-    return Api(server.url)
 
 
 @pytest.fixture(scope="module")

@@ -5,12 +5,6 @@ import pytest
 
 from tests.acceptance.test_example import IDENTIFICATION
 from tests.support.api import Api, Json, pointers
-from tests.support.server import Server
-
-
-@pytest.fixture(scope="module")
-def api(server: Server) -> Api:
-    return Api(server.url)
 
 
 @pytest.fixture(scope="module")

@@ -9,16 +9,10 @@ import pytest
 
 from tests.support import paper, responses
 from tests.support.api import Api, JobFailedError, Json, pointers
-from tests.support.server import Server
 
 PARAMETRIC: Json = {"kind": "parametric_subspace"}
 SUBSPACE: Json = {"kind": "frequency_subspace"}
 DISC: Json = {"kind": "disc", "radius": 0.95}
-
-
-@pytest.fixture(scope="module")
-def api(server: Server) -> Api:
-    return Api(server.url)
 
 
 @pytest.fixture(scope="module")

@@ -8,7 +8,6 @@ import pytest
 from app.files import mat_writer
 from tests.support import paper, responses
 from tests.support.api import Api, Json, pointers
-from tests.support.server import Server
 
 PARAMETRIC: Json = {"kind": "parametric_subspace"}
 SUBSPACE: Json = {"kind": "frequency_subspace"}
@@ -16,11 +15,6 @@ INSIDE: Json = {
     "kind": "intersection",
     "regions": [{"kind": "disc", "radius": 0.95}, {"kind": "half_plane", "side": "right", "edge": -0.9}],
 }
-
-
-@pytest.fixture(scope="module")
-def api(server: Server) -> Api:
-    return Api(server.url)
 
 
 @pytest.fixture(scope="module")

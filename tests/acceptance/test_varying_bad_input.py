@@ -11,17 +11,11 @@ from app.files import csv_file
 from benchmarks.wind_turbine_plant import PLANT
 from tests.support import paper, varying
 from tests.support.api import Api, JobFailedError, Json, pointers
-from tests.support.server import Server
 from tests.support.varying import Signals
 
 LIKELIHOOD: Json = {"kind": "periodic_likelihood"}
 MOESP: Json = {"kind": "periodic_moesp"}
 COX: Json = {"kind": "correlation_realisation"}
-
-
-@pytest.fixture(scope="module")
-def api(server: Server) -> Api:
-    return Api(server.url)
 
 
 @pytest.fixture(scope="module")

@@ -7,14 +7,8 @@ from benchmarks.wind_turbine_plant import PLANT
 from tests.support import varying
 from tests.support.api import Api, Json, pointers
 from tests.support.responses import complex_array
-from tests.support.server import Server
 
 POINTS = (-0.8, 0.0, 0.8)
-
-
-@pytest.fixture(scope="module")
-def api(server: Server) -> Api:
-    return Api(server.url)
 
 
 @pytest.fixture(scope="module")

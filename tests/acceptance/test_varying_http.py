@@ -13,14 +13,8 @@ from identification.varying.affine_parameters import AffineSizes
 from tests.support import varying
 from tests.support.api import Api, Json
 from tests.support.responses import complex_array
-from tests.support.server import Server
 
 LIKELIHOOD: Json = {"kind": "periodic_likelihood"}
-
-
-@pytest.fixture(scope="module")
-def api(server: Server) -> Api:
-    return Api(server.url)
 
 
 @pytest.fixture(scope="module")

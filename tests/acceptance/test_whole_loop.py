@@ -11,7 +11,6 @@ from identification.models import RationalStructure
 from identification.simulation import simulate
 from tests.support.api import Api, Json
 from tests.support.paper import DEVIATIONS, FIGURES, PLANT, THETA, Figure, fir, played, prepared
-from tests.support.server import Server
 
 REPETITIONS = 20
 LEAST_MEETING = 19
@@ -19,11 +18,6 @@ SAMPLING_ERROR = 0.1
 ELLIPSOID = 12.59  # 95 % quantile of χ²(6)
 SCALE = np.array(DEVIATIONS)
 PREDICTION_ERROR: Json = {"kind": "prediction_error", "initialConditions": "zero"}
-
-
-@pytest.fixture(scope="module")
-def api(server: Server) -> Api:
-    return Api(server.url)
 
 
 @pytest.fixture(scope="module")
