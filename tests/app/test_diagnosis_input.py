@@ -245,7 +245,7 @@ def test_fitted_data_are_not_held_out(bench: Bench, plant: str, known: str) -> N
     assert bench.refused(f"/v1/models/{known}/extensions", body) == ["/heldOutExperimentIds/0"]
 
 
-def test_a_model_with_effects_is_not_taken_for_its_plant_alone(bench: Bench, plant: str) -> None:
+def test_a_response_says_which_effects_it_cannot_hold(bench: Bench, plant: str) -> None:
     row = bench.container.resources.get("models", bench.model(plant)["id"])
     document = copy.deepcopy(row.document)
     document["origin"] = "extended"
@@ -253,16 +253,6 @@ def test_a_model_with_effects_is_not_taken_for_its_plant_alone(bench: Bench, pla
     effect |= {"coefficients": [[1.0]], "standardDeviations": None, "parameters": []}
     document["effects"] = [effect]
     model = bench.container.resources.add("models", document, plant).id
-    design = {
-        "plantId": plant,
-        "modelId": model,
-        "operatingPoints": {"kind": "grid", "points": [[0.0], [1.0]]},
-        "targets": [{"kind": "parameter_deviation", "standardDeviations": [0.1, 0.1, 0.1, 0.1]}],
-        "spectrumFamily": {"kind": "lines", "samples": 100},
-        "samples": 100,
-        "sampleTimeSeconds": 0.05,
-    }
-    assert bench.refused("/v1/designs", design) == ["/modelId"]
     query = {"operatingPoint": 0.0, "minimumRadPerSecond": 1.0, "maximumRadPerSecond": 2.0}
     found = bench.client.get(f"/v1/models/{model}/frequency-response", params=query).json()
     assert found["leftOutEffects"] == ["cubic_stiffness"]
