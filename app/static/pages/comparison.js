@@ -24,24 +24,23 @@ const at = (rest) => `/plants/${context.plantId}/${rest}`;
 
 loadPlotly(); // while the data come
 page(async () => {
-  const [found, comparison, { rows, timeRows }, experiments] = await Promise.all([
-    plant, get(`/comparisons/${context.comparisonId}`), get(`/comparisons/${context.comparisonId}/maps`), list("/experiments", { plantId: context.plantId })]);
-  const model = await get(`/models/${comparison.modelId}`);
+  const compared = get(`/comparisons/${context.comparisonId}`);
+  const [found, comparison, model, { rows, timeRows }, experiments] = await Promise.all([
+    plant, compared, compared.then((one) => get(`/models/${one.modelId}`)), get(`/comparisons/${context.comparisonId}/maps`), list("/experiments", { plantId: context.plantId })]);
   const known = indexed(experiments);
   drawVerdict(comparison, model);
   const titles = new Map(experiments.map((one) => [one.id, experimentTitle(one, found.schedulingVariables)]));
   const view = new CellView(byId("cell"), { plant: found, model, comparison, experiments: known });
   const maps = new ResidualMaps(byId("maps"), rows, { variables: found.schedulingVariables, titles, onChoose: (cell) => view.show(cell) });
+  const worst = maps.worst();
+  if (worst) maps.choose(worst);
   drawTests(comparison, titles, found);
   drawExperiments(comparison, titles, found.schedulingVariables);
   const distribution = h("div", {});
   const misfit = misfitPlots(byId("misfit"), comparison.parts, found.schedulingVariables);
   byId("misfit").append(distribution);
   const alongTime = timeRows.map((row) => timeResidualPlot(byId("misfit"), row, titles.get(row.experimentId) ?? "experiment"));
-  await Promise.all([misfit, ...alongTime, rows.length ? distributionPlot(distribution, maps.parts) : null]);
-  const worst = maps.worst();
-  if (worst) maps.choose(worst);
-  await view.drawn;
+  await Promise.all([misfit, ...alongTime, rows.length ? distributionPlot(distribution, maps.parts) : null, view.drawn]);
 });
 
 function drawVerdict(comparison, model) {

@@ -32,8 +32,10 @@ page(async () => {
   drawHeadline(end, found, { asked: asked !== undefined, steps });
   drawVersions(line, steps, ends);
   replace(byId("staircase"));
-  if (steps.length > 1) await staircasePlot(byId("staircase"), steps);
-  return drawPair(byId("pair"), { line, steps, plant: found, experiments });
+  await Promise.all([
+    steps.length > 1 ? staircasePlot(byId("staircase"), steps) : null,
+    drawPair(byId("pair"), { line, steps, plant: found, experiments }),
+  ]);
 });
 
 function empty() {
