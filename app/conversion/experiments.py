@@ -6,6 +6,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from app.conversion.extremes import within_doubles
+from app.conversion.fields import field_named
 from app.schemas.experiments import (
     Experiment,
     ExperimentKind,
@@ -17,6 +19,8 @@ from app.store.arrays import ArrayStore
 from identification.comparison.batch import Batch
 from identification.comparison.gather import gather
 from identification.errors import ShapeError
+from identification.extension.model import require_matching
+from identification.models import LpvModel
 from identification.signals import FrequencyResponse, Measurement, TimeRecord
 
 Request = TimeRecordRequest | FrequencyResponseRequest | MatrixFrequencyResponseRequest
@@ -95,6 +99,16 @@ def kept_batches(given: Sequence[Mapping[str, Any]], arrays: ArrayStore, mean_va
     """The experiments in a payload with their logged quantities, ready to be compared with a model."""
     logged = [logged_values(Experiment.model_validate(one["document"])) for one in given]
     return gather(kept_measurements(given, arrays), mean_value, logged)
+
+
+def held_out_batches(
+    given: Sequence[Mapping[str, Any]], arrays: ArrayStore, mean_value: bool, model: LpvModel
+) -> tuple[Batch, ...]:
+    """The held-out experiments in a payload, if any; raises MisuseError when they do not match the model."""
+    with field_named({}, "/heldOutExperimentIds"), within_doubles():
+        held_out = kept_batches(given, arrays, mean_value) if given else ()
+        require_matching(model, held_out)
+    return held_out
 
 
 def kept_measurements(given: Sequence[Mapping[str, Any]], arrays: ArrayStore) -> list[Measurement]:

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from app.conversion.effects import effect_of, extended_model
-from app.conversion.experiments import kept_batches
+from app.conversion.experiments import held_out_batches, kept_batches
 from app.conversion.extremes import require_finite, within_doubles
 from app.conversion.fields import field_named
 from app.conversion.models import test_documents
@@ -24,7 +24,6 @@ from identification.diagnosis.staircase import refined, relative_error
 from identification.effects.second_variable import SecondVariable, with_logged
 from identification.errors import MisuseError
 from identification.extension.fit import Fit, fit
-from identification.extension.model import require_matching
 from identification.places.place import Effect
 
 KIND = "extension"
@@ -36,10 +35,7 @@ def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
     request = ExtensionRequest.model_validate(payload["request"])
     parent = Model.model_validate(payload["model"])
     model = extended_model(parent, Plant.model_validate(payload["plant"]))
-    with field_named({}, "/heldOutExperimentIds"), within_doubles():
-        given = payload["heldOut"]
-        held_out = kept_batches(given, context.arrays, request.mean_value) if given else ()
-        require_matching(model.base, held_out)
+    held_out = held_out_batches(payload["heldOut"], context.arrays, request.mean_value, model.base)
     with field_named(FIELDS, "/experimentIds"), within_doubles():
         batches = kept_batches(payload["experiments"], context.arrays, request.mean_value)
         context.progress(0.2, "the model without the effect")

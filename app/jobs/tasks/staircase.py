@@ -6,7 +6,7 @@ from typing import Any
 from app import __version__
 from app.conversion.diagnoses import findings
 from app.conversion.effects import chosen_effects, extended_model
-from app.conversion.experiments import kept_batches
+from app.conversion.experiments import held_out_batches, kept_batches
 from app.conversion.extremes import require_finite, within_doubles
 from app.conversion.fields import field_named
 from app.conversion.models import test_documents
@@ -19,7 +19,6 @@ from app.schemas.plants import Plant
 from app.schemas.staircases import StaircaseRequest, StaircaseStep
 from app.store.identifiers import new_identifier
 from identification.diagnosis.staircase import Step, conclusion, staircase
-from identification.extension.model import require_matching
 from identification.places.linear import Coefficient
 from identification.places.place import Effect
 
@@ -38,10 +37,7 @@ def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
     request = StaircaseRequest.model_validate(payload["request"])
     first = Model.model_validate(payload["model"])
     model = extended_model(first, Plant.model_validate(payload["plant"]))
-    with field_named({}, "/heldOutExperimentIds"), within_doubles():
-        given = payload["heldOut"]
-        held_out = kept_batches(given, context.arrays, request.mean_value) if given else ()
-        require_matching(model.base, held_out)
+    held_out = held_out_batches(payload["heldOut"], context.arrays, request.mean_value, model.base)
     with field_named(FIELDS, "/experimentIds"), within_doubles():
         batches = kept_batches(payload["experiments"], context.arrays, request.mean_value)
         context.progress(0.2, "effects one after the other")
