@@ -218,13 +218,14 @@ def _ends(errors: Sequence[float]) -> tuple[str, str]:
 
 def unknown_page(runs: Runs, summary: dict[str, Any]) -> Report:
     """What is said of effects that the library does not hold, and whether the picture shows them."""
-    kinds = [kind for kind in summary if kind != "all"]
-    found = [summary[kind]["not in the library"] for kind in kinds]
+    each = summary["each"]
+    kinds = list(each)
+    found = [each[kind]["not in the library"] for kind in kinds]
     names = ("correlation of the response", "correlation of the map", "share of the response in what is missing")
     rows = []
     for kind, f in zip(kinds, found, strict=True):
-        medians = [significant(summary[kind][name]["median"]) for name in names]
-        rows.append((kind, _rate(f), _rate(summary[kind]["a wrong effect with confidence"]), *medians))
+        medians = [significant(each[kind][name]["median"]) for name in names]
+        rows.append((kind, _rate(f), _rate(each[kind]["a wrong effect with confidence"]), *medians))
     heads = ("removed", "not in the library", "wrong with confidence", *names)
     bars = Plot(_bars(kinds, found, "“not in the library” (%)", 90.0), "What is said.", Table(heads, tuple(rows)))
     figure = new_figure(height=320)
@@ -233,12 +234,19 @@ def unknown_page(runs: Runs, summary: dict[str, Any]) -> Report:
             values = [run[name] for run in runs if run["kind"] == kind]
             figure.add_box(x=[kind] * len(values), y=values, name=name, marker={"color": colour(i)}, showlegend=False)
     figure.update_yaxes(title="correlation with the truth", range=[0, 1.02])
-    added = tuple((kind, "; ".join(summary[kind]["added"])) for kind in kinds)
+    added = tuple((kind, "; ".join(each[kind]["added"])) for kind in kinds)
     caption = "Of the smooth response that is missing (first colour), and of the map by record, band and line class."
     shape = Plot(figure, caption, Table(("removed", "what was tried instead"), added, text_columns=2))
-    facts = (Fact(_rate(summary["all"]["not in the library"]), "called “not in the library”"),)
+    facts = (
+        Fact(
+            _rate(summary["unlike others"]["not in the library"]), "of five unlike others called “not in the library”"
+        ),
+        Fact(
+            f"{len(summary['explained by a relation'])} of {len(kinds)}", "effects have a near relation in the library"
+        ),
+    )
     introduction = f"{COMMAND} unknown --runs {len(runs) // len(kinds)}"
-    shown = Section("The smooth picture in one run", blocks=tuple(_missing(kind) for kind in kinds))
+    shown = Section("The smooth picture in one run", blocks=tuple(_missing(kind) for kind in unknown.UNLIKE_OTHERS))
     sections = (Section("What is said", blocks=(bars,)), Section("Its shape", blocks=(shape,)), shown)
     return Report("Effects that the library does not hold", introduction, facts, sections)
 

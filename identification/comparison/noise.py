@@ -145,3 +145,19 @@ def noise_freedom(batches: Sequence[Batch], weights: Sequence[FloatArray]) -> fl
         lines = weight.reshape(len(batch.points), 2, -1).sum(axis=1)
         total += float(np.sum(spread_back(lines, batch.half_width, batch.real) ** 2)) / batch.raw_freedom
     return 1 / total if total > 0 else np.inf
+
+
+def variance_of_projection(batches: Sequence[Batch], weights: Sequence[FloatArray], freedom: float) -> float:
+    """E (Σ q_i r_i)² with w_i = q_i² of sum one: whitening by variances that were estimated makes it more than one.
+
+        1 + Σ_i w_i 2/(ν_i − 4) (1 − ν_i/ν)
+
+    to first order in the variances of σ̂², with the degrees of freedom ν_i of each σ̂² and ν = `freedom` of them all
+    together: lines that were judged too quiet weigh too much. One where a single σ̂² is met, and where all are known.
+    """
+    excess = 0.0
+    for batch, weight in zip(batches, weights, strict=True):
+        if np.isfinite(batch.freedom):
+            own = 2 / (batch.freedom - 4) * max(1 - batch.freedom / freedom, 0.0)
+            excess += float(np.sum(weight)) * own
+    return 1 + excess

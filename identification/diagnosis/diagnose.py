@@ -68,7 +68,7 @@ class Diagnosis:
     @property
     def confident(self) -> bool:
         """Whether one effect has more than 95 % of the weight and leaves nothing that noise does not explain."""
-        return self.best is not None and self.best.weight > 1 - LEVEL and self.verdict == "explained"
+        return self.best is not None and self.best.weight > 1 - LEVEL and self.remaining.p_value >= STRICT
 
 
 def rows_of(model: ExtendedModel, batches: Sequence[Batch]) -> Rows:

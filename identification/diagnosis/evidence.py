@@ -10,11 +10,9 @@ from identification.diagnosis.scores import Score
 from identification.extension.fit import Fit, fit
 from identification.extension.model import PlacedEffect
 from identification.extension.rows import Rows
-from identification.places.simulate import NoSteadyStateError
 
 SHORT_LIST = 8
 STARTS = 2
-SHARES = (1.0, 0.3, 0.1)
 LIKELY = 6.0
 ALIKE = 2.0
 HOPELESS = 60.0
@@ -104,10 +102,7 @@ def _judged(base: Fit, score: Score, found: Fit, count: float) -> Evidence:
 
 
 def _refitted(base: Fit, score: Score, hopeless: float) -> Fit | None:
-    fits = [one for start in _starts(base, score) if (one := _attempt(base, score, start, hopeless)) is not None]
-    if not fits:
-        return None
-    best = min(fits, key=lambda one: one.cost)
+    best = min((_attempt(base, score, start, hopeless) for start in _starts(base, score)), key=lambda one: one.cost)
     return None if _outside(best.model.effects[-1], best) else best
 
 
@@ -136,30 +131,11 @@ def _starts(base: Fit, score: Score) -> list[int]:
     return [score.best, other] if sizes[other] > 0.7 * score.statistic and STARTS > 1 else [score.best]
 
 
-def _attempt(base: Fit, score: Score, variant: int, hopeless: float) -> Fit | None:
-    """From the amplitudes that the score points to, or smaller ones; None unless it explains more than the base."""
-    signature = score.candidate.signatures[variant]
-    amplitudes = signature.amplitudes(base.residual)
-    bound = signature.placed.effect.largest
-    if bound is not None:
-        amplitudes = np.clip(amplitudes, -bound, bound)
-    for share in SHARES:
-        start = replace(signature.placed, coefficients=_signed(signature.placed, share * amplitudes))
-        try:
-            found = fit(base.model.plus(start), base.rows, iterations=12, tolerance=0.05, hopeless=hopeless)
-        except NoSteadyStateError:
-            continue
-        if found.cost < base.cost:
-            return found
-    return None
-
-
-def _signed(one: PlacedEffect, amplitudes: FloatArray) -> FloatArray:
-    effect, shape = one.effect, one.coefficients.shape
-    values = amplitudes.reshape(shape)
-    if effect.sign and amplitudes.size == 1:
-        values = effect.sign * np.maximum(effect.sign * values, 0.0)
-    return np.asarray(values, dtype=np.float64)
+def _attempt(base: Fit, score: Score, variant: int, hopeless: float) -> Fit:
+    """From amplitude zero, so that the first step, halved where it is too long, is the one that the score points to."""
+    start = score.candidate.signatures[variant].placed
+    absent = base.model.plus(replace(start, coefficients=np.zeros_like(start.coefficients)))
+    return fit(absent, base.rows, iterations=13, tolerance=0.05, hopeless=hopeless, start=base.flows)
 
 
 def _weighted(base: Fit, found: Sequence[Evidence]) -> list[Evidence]:

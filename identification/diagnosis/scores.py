@@ -71,10 +71,12 @@ def _one_sided(one: Signature) -> bool:
 
 def _p_value(fit: Fit, one: Signature, statistic: float) -> float:
     count = len(one.basis)
-    freedom, size = one.freedom, abs(statistic)
+    freedom, size = one.freedom, abs(statistic) / one.variance
     if not fit.rows.scaled:
         freedom = max(fit.rows.count - len(fit.tangents) - count, 1.0)
         size = size * freedom / max(float(fit.residual @ fit.residual) - size, np.finfo(float).tiny)
+    elif np.isfinite(freedom):
+        size = size * freedom / max(freedom - 2, 1.0)
     p = float(chdtrc(count, size) if np.isinf(freedom) else fdtrc(count, freedom, size / count))
     if not _one_sided(one):
         return p

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from identification.arrays import FloatArray
-from identification.comparison.noise import noise_freedom
+from identification.comparison.noise import noise_freedom, variance_of_projection
+from identification.effects.misplaced_point import MisplacedPoint
 from identification.extension.fit import Fit
 from identification.extension.model import PlacedEffect, placed
 from identification.extension.rows import effect_tangents
@@ -15,6 +16,8 @@ from identification.whiteness import orthonormal
 
 INVISIBLE = 1e-4
 RECORDS = "it acts on signals, which only records of at least two periods show; these experiments are not all periodic"
+TWICE = "the model has it already; several would only imitate a curve that is not in the library"
+SHAPED = "the model has a curve of fitted shape in this place already, and two of them can imitate a third"
 LOGGED = "no quantity was logged for every one of these experiments"
 
 
@@ -24,7 +27,7 @@ class Signature:
 
     `gain` (c, c): basisᵀ(projected change) for amplitudes of one, so that e ≈ gain⁻¹ basis r; `kept`: the share of the
     length of the change that the projection leaves; `freedom`: real degrees of freedom of the noise variance that the
-    signature meets.
+    signature meets; `variance` of basis r in noise alone.
     """
 
     placed: PlacedEffect
@@ -32,6 +35,7 @@ class Signature:
     gain: FloatArray
     kept: float
     freedom: float
+    variance: float
 
     def amplitudes(self, residual: FloatArray) -> FloatArray:
         """The amplitude coefficients (c,) that the residual (R,) points to, to first order."""
@@ -54,7 +58,10 @@ def tangent_space(fit: Fit) -> FloatArray:
 
 
 def candidates(fit: Fit, effects: Sequence[Effect], degree: int = 0) -> tuple[Candidate, ...]:
-    """The effects with their signatures at the fit; amplitudes are polynomials of this degree in p."""
+    """The effects with their signatures at the fit; amplitudes are polynomials of this degree in p.
+
+    Effects on signals and misplaced points enter a model once, and only one whose shape is fitted at each place.
+    """
     space = tangent_space(fit)
     return tuple(_candidate(fit, effect, degree, space) for effect in effects)
 
@@ -62,6 +69,9 @@ def candidates(fit: Fit, effects: Sequence[Effect], degree: int = 0) -> tuple[Ca
 def _candidate(fit: Fit, effect: Effect, degree: int, space: FloatArray) -> Candidate:
     if not all(effect.judgeable(flow) for flow in fit.flows):
         return Candidate(effect, (), why_not=RECORDS if effect.needs_records else LOGGED)
+    taken = _taken(effect, [one.effect for one in fit.model.effects])
+    if taken:
+        return Candidate(effect, (), why_not=taken)
     variables = fit.flows[0].setting.points.shape[1]
     variants = [placed(one, degree, variables) for one in _variants(fit, effect)]
     if not variants:
@@ -74,6 +84,13 @@ def _candidate(fit: Fit, effect: Effect, degree: int, space: FloatArray) -> Cand
     seen = tuple(one for one in found if one is not None)
     why = "" if seen else effect.unseen
     return Candidate(effect, seen, effect.looked_at(fit.flows[0]), why)
+
+
+def _taken(effect: Effect, there: Sequence[Effect]) -> str:
+    if effect.kind in {one.kind for one in there if one.needs_records or isinstance(one, MisplacedPoint)}:
+        return TWICE
+    shaped = {one.place for one in there if one.needs_records and one.fitted_names()}
+    return SHAPED if effect.needs_records and effect.fitted_names() and effect.place in shaped else ""
 
 
 def _variants(fit: Fit, effect: Effect) -> list[Effect]:
@@ -95,5 +112,7 @@ def _signature(fit: Fit, one: PlacedEffect, changes: FloatArray, projected: Floa
     several = len(projected) > 1
     basis = np.ascontiguousarray(orthonormal(projected.T).T) if several else projected / after[:, None]
     weight = np.sum(basis**2, axis=0) / len(basis)
-    freedom = noise_freedom(fit.rows.batches, fit.rows.parts(weight))
-    return Signature(one, basis, basis @ projected.T, float(after.max() / before.max()), freedom)
+    parts = fit.rows.parts(weight)
+    freedom = noise_freedom(fit.rows.batches, parts)
+    variance = variance_of_projection(fit.rows.batches, parts, freedom)
+    return Signature(one, basis, basis @ projected.T, float(after.max() / before.max()), freedom, variance)

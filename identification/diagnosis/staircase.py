@@ -8,8 +8,6 @@ import numpy as np
 
 from identification.comparison.batch import EXCITED, Batch
 from identification.diagnosis.diagnose import STRICT, Diagnosis, diagnose
-from identification.effects.library import library
-from identification.effects.misplaced_point import MisplacedPoint
 from identification.extension.fit import Fit, fit
 from identification.extension.model import ExtendedModel
 from identification.places.place import Effect
@@ -59,15 +57,14 @@ def staircase(
 ) -> tuple[Step, ...]:
     """Diagnose, add the announced effect of most weight, fit θ and all effects together, and again.
 
-    Effects on signals and misplaced points are added once: several would only imitate a curve that is not in the
-    library. Ends at the noise floor (no effect is announced), after `largest` effects, or when an effect would raise
+    Ends at the noise floor (no effect is announced), after `largest` effects, or when an effect would raise
     the error on held-out data.
     """
     current = diagnose(model, batches, effects, degree, seed)
     steps = [_step(current.base, batches, held_out, current)]
     while current.best is not None and len(steps) <= largest:
         grown = refined(current.best.fit)
-        current = diagnose(grown.model, batches, _left(grown.model, effects), degree, seed)
+        current = diagnose(grown.model, batches, effects, degree, seed)
         found = _step(grown, batches, held_out, current)
         if _rises(found.held_out_error, steps[-1].held_out_error):
             break
@@ -78,12 +75,6 @@ def staircase(
 def refined(found: Fit) -> Fit:
     """A fit of the short list carried on to its minimum, with the covariance of all its parameters."""
     return fit(found.model, found.rows, exact=found.rows.scaled, start=found.flows)
-
-
-def _left(model: ExtendedModel, effects: Sequence[Effect] | None) -> tuple[Effect, ...]:
-    once = [one.effect for one in model.effects if one.effect.needs_records or isinstance(one.effect, MisplacedPoint)]
-    there = {one.kind for one in once}
-    return tuple(one for one in (library() if effects is None else effects) if one.kind not in there)
 
 
 def conclusion(steps: Sequence[Step]) -> Literal["nothing missing", "explained", "not in the library"]:

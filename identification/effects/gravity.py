@@ -14,6 +14,7 @@ from identification.places.place import FurtherParameter
 class Gravity(Feedback):
     """f = e sin(2πx/X), `period` X of the position, as of gravity or of cogging in a motor.
 
+    The position must reach a sixth of the period: a sine that bends less cannot be told from a spring that softens.
     Described in [Nayfeh1979, Section 2.1].
     """
 
@@ -23,7 +24,7 @@ class Gravity(Feedback):
     unit: ClassVar[str] = "input unit"
     source: ClassVar[str] = "[Nayfeh1979, Section 2.1]"
     parameters: ClassVar[tuple[FurtherParameter, ...]] = (
-        FurtherParameter("period", "output", (0.5, 0.8, 1.2, 2.0, 3.5)),
+        FurtherParameter("period", "output", (0.5, 0.8, 1.2, 2.0, 3.5), highest=6.0),
     )
 
     period: float = 6.283185307179586

@@ -145,17 +145,22 @@ def _polished(current: Fit) -> Fit:
 
 def differences(current: Fit) -> FloatArray:
     """∂Ŷ by all parameters (further parameters by their logarithm) from differences of the simulation, whitened."""
-    size = np.linalg.norm(current.tangents, axis=1)
-    base = [flow.output for flow in current.flows]
-    columns = []
-    for i, length in enumerate(size):
-        step = np.zeros(len(size))
-        step[i] = 0.1 / length if length > 0 else 0.0
+    return np.stack([_difference(current, i, tangent) for i, tangent in enumerate(current.tangents)])
+
+
+def _difference(current: Fit, i: int, tangent: FloatArray) -> FloatArray:
+    """By one parameter: to its other side where this one has no steady state; the tangent itself where neither has."""
+    length = float(np.linalg.norm(tangent))
+    for size in (0.1 / length, -0.1 / length) if length > 0 else ():
+        step = np.zeros(len(current.tangents))
+        step[i] = size
         moved = _free_move(current.model, step)
-        pairs = zip(current.rows.batches, current.flows, base, strict=True)
-        change = [moved.respond(batch, flow.core).output - old for batch, flow, old in pairs]
-        columns.append(current.rows.whiten(change) / (step[i] or 1.0))
-    return np.stack(columns)
+        try:
+            change = [moved.respond(flow.batch, flow.core).output - flow.output for flow in current.flows]
+        except NoSteadyStateError:
+            continue
+        return current.rows.whiten(change) / size
+    return tangent
 
 
 def _free_move(model: ExtendedModel, step: FloatArray) -> ExtendedModel:

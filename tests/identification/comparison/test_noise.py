@@ -9,7 +9,13 @@ from scipy.stats import kstest
 
 from identification.comparison.gather import gather
 from identification.comparison.lack_of_fit import lack_of_fit
-from identification.comparison.noise import noise_freedom, noise_of_mean, pooled, spread_back
+from identification.comparison.noise import (
+    noise_freedom,
+    noise_of_mean,
+    pooled,
+    spread_back,
+    variance_of_projection,
+)
 from identification.extension.rows import Rows
 from identification.signals import TimeRecord
 from tests.support.oscillators import batches
@@ -88,3 +94,19 @@ def test_few_periods_give_student_not_normal():
     assert 0.8 * everything < noise_freedom([batch], [all_lines]) <= everything
     known = replace(batch, raw_freedom=np.inf, freedom=np.inf)
     assert noise_freedom([known], [one]) == np.inf
+
+
+@pytest.mark.parametrize(("lines", "freedom"), [(1, 30.0), (6, 30.0), (60, 30.0), (60, np.inf)])
+def test_a_projection_has_more_variance_where_many_weights_are_random(lines, freedom):
+    """Drawn: noise over its estimated deviation, along a change that was whitened by the same estimates."""
+    (batch,) = batches(0)
+    batch = replace(batch, freedom=freedom, raw_freedom=freedom, half_width=0)
+    weight = np.zeros(batch.weights_of_rows.shape)
+    weight[0, 0, 1 : lines + 1] = 1 / lines
+    expected = variance_of_projection([batch], [weight.ravel()], noise_freedom([batch], [weight.ravel()]))
+    g = np.random.default_rng(0)
+    known = np.isinf(freedom)
+    deviation = np.ones((40000, lines)) if known else np.sqrt(g.chisquare(freedom, (40000, lines)) / (freedom - 2))
+    residual = g.standard_normal(deviation.shape) / deviation
+    projected = np.sum(residual / deviation, axis=1) ** 2 / np.sum(deviation**-2, axis=1)
+    assert np.mean(projected) == pytest.approx(expected, abs=0.02)

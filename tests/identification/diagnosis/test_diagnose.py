@@ -1,5 +1,7 @@
 """Right effects first, those alike in one set, nothing invented, everything else called unknown."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -61,6 +63,7 @@ def test_the_hidden_effect_is_first_and_explains_it(kind, data):
     assert kinds(found.announced)[0] == kind
     assert found.verdict == "explained"
     assert found.remaining.p_value > 1e-3
+    assert found.confident == (found.best.weight > 0.95)
     assert found.lack_of_fit.p_value < 1e-6
     assert sum(one.weight for one in found.evidence) <= 1 + 1e-9
 
@@ -205,3 +208,12 @@ def test_the_same_seed_gives_the_same_answer():
     one, other = (diagnose(MODEL, data, (Delay(), Lag(), Inductance()), seed=4) for _ in range(2))
     assert [s.adjusted_p for s in one.scores] == [s.adjusted_p for s in other.scores]
     assert one.evidence[0].bic == other.evidence[0].bic
+
+
+def test_an_effect_that_leaves_more_than_noise_is_not_announced_with_confidence():
+    """A cubic stiffness looks much like a stop beyond a gap: most is explained, and still it is not that."""
+    data = with_force(lambda x, v: 40 * x**3)
+    found = diagnose(MODEL, data, [one for one in library() if one.kind not in ("cubic_stiffness", "gravity")])
+    assert found.best.weight > 0.95
+    assert found.remaining.p_value < 1e-3
+    assert not replace(found, verdict="explained").confident

@@ -4,21 +4,26 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.stats import chi2, kstest
+from scipy.stats import chi2, f, kstest
 
-from identification.diagnosis.scores import _tail, score_tests
-from identification.diagnosis.signatures import candidates, tangent_space
+from identification.comparison.gather import gather
+from identification.diagnosis.scores import _p_value, _tail, score_tests
+from identification.diagnosis.signatures import SHAPED, TWICE, candidates, tangent_space
 from identification.effects.antiresonance import Antiresonance
 from identification.effects.cubic_stiffness import CubicStiffness
+from identification.effects.dead_band_spring import DeadBandSpring
 from identification.effects.delay import Delay
+from identification.effects.inductance import Inductance
 from identification.effects.lag import Lag
 from identification.effects.library import library
 from identification.effects.quadratic_sensor import QuadraticSensor
 from identification.effects.resonance import Resonance
 from identification.effects.time_base import TimeBase
 from identification.extension.fit import fit
+from identification.extension.model import placed
 from identification.extension.rows import Rows
-from tests.support.oscillators import MODEL, batches
+from identification.signals import FrequencyResponse
+from tests.support.oscillators import MODEL, POINTS, batches
 
 FEW = (Delay(), Lag(), CubicStiffness(), QuadraticSensor(), Resonance())
 
@@ -116,3 +121,38 @@ def test_adjusted_p_values_are_never_below_the_ones_they_adjust():
 def test_below_what_the_draws_resolve_the_bound_counts_all_that_was_tried():
     assert _tail(1e-4, np.linspace(3e-4, 1.0, 4000), 40) == pytest.approx(4e-3)
     assert _tail(0.05, np.linspace(1e-3, 1.0, 4000), 40) == pytest.approx(0.05, rel=0.03)
+
+
+def test_the_p_of_a_signature_at_one_line_is_that_of_a_ratio_of_variances():
+    """Whitening makes the mean of r² one, F(1, ν) has the mean ν/(ν − 2)."""
+    found = base(3)
+    score = scored(found, (QuadraticSensor(),))["quadratic_sensor"]
+    alone = replace(score.signature, freedom=10.0, variance=1.0)
+    assert _p_value(found, alone, 4.0) == pytest.approx(f.sf(4.0 * 10 / 8, 1, 10))
+
+
+def test_variances_that_are_hardly_known_raise_no_false_alarms():
+    """Each line brings its own variance with five degrees of freedom: S is then a third larger than χ² says."""
+    g = np.random.default_rng(0)
+    omega = np.linspace(1, 12, 40)
+    clean = MODEL.base.frequency_response([[p] for p in POINTS], omega)
+    p = []
+    for _ in range(250):
+        noise = 1e-3 * np.sqrt(0.5) * (g.standard_normal(clean.shape) + 1j * g.standard_normal(clean.shape))
+        variance = 1e-6 * g.chisquare(10, clean.shape) / 10
+        data = [
+            FrequencyResponse(omega, y, (at,), variance=v, variance_degrees_of_freedom=5.0)
+            for at, y, v in zip(POINTS, clean + noise, variance, strict=True)
+        ]
+        found = fit(MODEL, Rows(gather(data)))
+        p.append(scored(found, (Inductance(),))["inductance"].p_value)
+    assert kstest(p, "uniform").pvalue > 1e-2
+    assert np.mean(np.array(p) < 0.05) < 0.08
+
+
+def test_a_curve_of_fitted_shape_is_not_joined_by_another_in_its_place():
+    spring = placed(DeadBandSpring(gap=0.1), 0, 1, 1.0)
+    found = fit(MODEL.plus(spring), Rows(batches(2)), iterations=1)
+    reasons = {one.effect.kind: one.why_not for one in candidates(found, library())}
+    assert (reasons["dead_band_spring"], reasons["gravity"], reasons["hysteresis"]) == (TWICE, SHAPED, SHAPED)
+    assert not any(reasons[kind] for kind in ("cubic_stiffness", "coulomb_friction", "saturation"))

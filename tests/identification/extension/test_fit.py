@@ -1,5 +1,7 @@
 """θ and effects together: exact without noise, and as accurate as the covariance says with it."""
 
+from dataclasses import dataclass
+
 import numpy as np
 import pytest
 
@@ -11,6 +13,7 @@ from identification.effects.rc_arc import RcArc
 from identification.extension.fit import differences, fit
 from identification.extension.model import ExtendedModel, placed
 from identification.extension.rows import Rows
+from identification.places.simulate import NoSteadyStateError
 from identification.signals import FrequencyResponse
 from tests.support.oscillators import MODEL, POINTS, THETA, batches, integrated, phasors, records
 
@@ -87,3 +90,31 @@ def test_parameters_go_round():
     assert np.array_equal(moved.parameters, 2 * model.parameters)
     assert moved.effects[0].effect == RcArc(time=0.6)
     assert isinstance(moved, ExtendedModel)
+
+
+@dataclass(frozen=True)
+class Brittle(CubicStiffness):
+    """Nothing up to the limit of the position; beyond it a force that no steady state can bear."""
+
+    limit: float = 0.0
+
+    def force(self, x, velocity):
+        return np.where(abs(x).max(axis=1, keepdims=True) > self.limit, 1e9 * x, 0.0 * x)
+
+
+def test_derivatives_at_the_edge_of_what_has_a_steady_state_are_taken_to_the_other_side():
+    """Not read off the tangent, which leaves the loop around the stiffness out."""
+    rows = Rows(batches(4, 0.3))
+    hardening = MODEL.plus(placed(CubicStiffness(), 0, 1, 15.0))
+    steady = hardening.respond(rows.batches[0])
+    brittle = Brittle(limit=1.0001 * abs(steady.core_signal(finer=2)).max())
+    at_the_edge = fit(hardening.plus(placed(brittle, 0, 1, 1.0)), rows, iterations=0, start=[steady])
+    gain = len(THETA) - 1
+    step = 0.1 / np.linalg.norm(at_the_edge.tangents[gain])
+    values = at_the_edge.model.parameters
+    more, less = (values + sign * step * np.eye(len(values))[gain] for sign in (1, -1))
+    (flow,) = at_the_edge.flows
+    with pytest.raises(NoSteadyStateError):
+        at_the_edge.model.with_parameters(more).respond(flow.batch, flow.core)
+    change = at_the_edge.model.with_parameters(less).respond(flow.batch, flow.core).output - flow.output
+    assert differences(at_the_edge)[gain] == pytest.approx(rows.whiten([change]) / -step)

@@ -14,7 +14,7 @@ export function reasons(diagnosis) {
   const titles = new Map(diagnosis.ranking.map((one) => [one.kind, one.title]));
   const names = diagnosis.announced.map((kind) => titles.get(kind) ?? kind);
   const found = [];
-  if (names.length === 1) found.push(`Announced: ${names[0]}. ${diagnosis.confident ? "It has more than 95 % of the weight." : "But others are not out of the question."}`);
+  if (names.length === 1) found.push(`Announced: ${names[0]}, with ${percent(diagnosis.ranking[0].evidence.weight)} of the weight${diagnosis.confident ? ", and what it leaves is noise" : ""}.`);
   if (names.length > 1) found.push(`These cannot be told apart here: ${names.slice(0, -1).join(", ")} and ${names.at(-1)}. Another experiment must decide.`);
   if (names.length) found.push(`The best effect takes away ${percent(diagnosis.explainedShare)} of what noise does not explain; what then remains has a p-value of ${probability(diagnosis.remaining.pValue)}.`);
   return found;
