@@ -7,15 +7,16 @@ both experiments together gives the hidden effect more than 95 % of the weight, 
 --library every effect of the library may be it, and the design tells the likeliest from all that were announced.
 """
 
-import argparse
-import json
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from app.report.document import Plot, Report, Section, Table
+from app.report.page import write
+from app.report.style import colour, new_figure
+from benchmarks.command import command_line, print_table, write_json
 from benchmarks.processes import over
 from benchmarks.virtual_bench.bench import PERIOD, SAMPLE_TIME
 from benchmarks.virtual_bench.played import Played, energy, records, steady
@@ -37,6 +38,7 @@ POINTS = np.linspace(-1, 1, 5)
 PERIODS, MOST_PERIODS, DRAWS, MOST_RIVALS = 4, 32, 200, 3
 NYQUIST = np.pi / SAMPLE_TIME
 STRATEGIES = ("designed", "repeated", "random")
+VERDICTS = ("right", "wrong", "undecided")
 
 
 @dataclass(frozen=True)
@@ -205,38 +207,37 @@ def summary(runs: Sequence[dict[str, Any]]) -> dict[str, Any]:
         table[pair] = {"runs": len(own), "first experiments tried": sum(run["tried"] for run in own)}
         for name in STRATEGIES:
             verdicts = [run[name]["verdict"] for run in own]
-            shares = {verdict: verdicts.count(verdict) / len(own) for verdict in ("right", "wrong", "undecided")}
+            shares = {verdict: verdicts.count(verdict) / len(own) for verdict in VERDICTS}
             spent = float(np.mean([run[name]["energy"] / run["budget"] for run in own]))
             table[pair][name] = {**shares, "energy over budget": spent}
     return table
 
 
-def picture(table: dict[str, Any]) -> Any:
+def picture(table: dict[str, Any]) -> Report:
     """Stacked bars: right, undecided, wrong for every strategy of every pair."""
-    import plotly.graph_objects as go
-
-    rows = [(pair, name) for pair in table for name in STRATEGIES]
-    axis = [[pair for pair, _ in rows], [name for _, name in rows]]
-    colours = {"right": "#009E73", "undecided": "#BBBBBB", "wrong": "#D55E00"}
-    bars = [
-        go.Bar(x=axis, y=[100 * table[p][name][verdict] for p, name in rows], name=verdict, marker_color=colour)
-        for verdict, colour in colours.items()
-    ]
-    figure = go.Figure(bars)
-    title = "Decision after a second experiment of the same energy, weight above 95 %"
-    figure.update_layout(barmode="stack", template="plotly_white", title=title, yaxis_title="% of runs")
-    return figure
+    cases = [(pair, name) for pair in table for name in STRATEGIES]
+    figure = new_figure(height=420)
+    for i, verdict in enumerate(VERDICTS):
+        shares = [100 * table[pair][name][verdict] for pair, name in cases]
+        figure.add_bar(x=list(zip(*cases, strict=True)), y=shares, name=verdict, marker={"color": colour(i)})
+    figure.update_layout(barmode="stack")
+    figure.update_yaxes(title="share of the runs (%)")
+    rows = tuple((pair, name, *(f"{table[pair][name][verdict]:.0%}" for verdict in VERDICTS)) for pair, name in cases)
+    plot = Plot(
+        figure, "Decision after the second experiment.", Table(("pair", "second", *VERDICTS), rows, text_columns=2)
+    )
+    introduction = (
+        "From an ambiguous first experiment, with a second one of no more energy; decided is above 95 % weight."
+    )
+    return Report("The experiment that decides", introduction, sections=(Section("Decisions", blocks=(plot,)),))
 
 
 def main() -> None:
     """Parses the command line, runs, prints."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--runs", type=int, default=50, help="for each pair, the two effects hidden in turn")
+    parser = command_line(__doc__ or "", runs=50, page=True)
     parser.add_argument("--workers", type=int, default=2)
-    parser.add_argument("--pair", type=int, default=None)
+    parser.add_argument("--pair", type=int, choices=range(len(PAIRS)), help="one pair alone")
     parser.add_argument("--library", action="store_true", help="judge by the whole library of effects")
-    parser.add_argument("--output", type=Path, default=None)
-    parser.add_argument("--page", type=Path, default=None)
     options = parser.parse_args()
     strengths()
     chosen = range(len(PAIRS)) if options.pair is None else [options.pair]
@@ -244,15 +245,10 @@ def main() -> None:
     tasks = [(n, PAIRS[n].effects[r % PAIRS[n].hidden], r, options.library) for n, r in every]
     runs = over(one_run, tasks, options.workers)
     table = summary(runs)
-    for pair, rows in table.items():
-        print(f"\n{pair}: {rows['runs']} runs\n{'second experiment':<20}{'right':>8}{'wrong':>8}{'undecided':>11}")
-        for name in STRATEGIES:
-            one = rows[name]
-            print(f"{name:<20}{one['right']:>8.0%}{one['wrong']:>8.0%}{one['undecided']:>11.0%}")
-    if options.output is not None:
-        options.output.write_text(json.dumps({"summary": table, "runs": runs}, indent=1) + "\n")
-    if options.page is not None:
-        picture(table).write_html(options.page, include_plotlyjs=True)
+    print_table([{"pair": pair, "second": name, **rows[name]} for pair, rows in table.items() for name in STRATEGIES])
+    write_json({"summary": table, "runs": runs}, options.output)
+    if options.page:
+        write(picture(table), options.page)
 
 
 if __name__ == "__main__":

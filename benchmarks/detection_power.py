@@ -1,22 +1,23 @@
-"""A design that would notice: python -m benchmarks.detection_power --runs 300 --output power.json.
+"""A design that would notice: python -m benchmarks.detection_power --runs 300 --output power.json --page power.html.
 
 Asks for the experiments of least energy that show a cubic stiffness of a stated size with 90 % power in a test at 5 %,
-plays them on the virtual bench (Runge–Kutta, its own noise) with that stiffness hidden and with nothing hidden, and
-counts how often the score test sees it.
+plays them on the virtual bench (Runge–Kutta, its own noise) with that stiffness hidden, with less, with more and with
+nothing hidden, and counts how often the score test sees it.
 """
 
-import argparse
-import json
+from collections.abc import Sequence
 from dataclasses import replace
-from itertools import pairwise
-from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy.stats import binom
 
+from app.report.document import Fact, Plot, Report, Section, Table
+from app.report.page import write
+from app.report.style import colour, new_figure
+from benchmarks.command import command_line, print_table, write_json
 from benchmarks.processes import over
 from benchmarks.virtual_bench.bench import PERIOD, SAMPLE_TIME
+from benchmarks.virtual_bench.figures import rate
 from benchmarks.virtual_bench.played import records, steady
 from benchmarks.virtual_bench.study import MODEL
 from identification.comparison.gather import gather
@@ -26,12 +27,14 @@ from identification.effects.cubic_stiffness import CubicStiffness
 from identification.extension.fit import fit
 from identification.extension.model import ExtendedModel
 from identification.extension.rows import Rows
+from oed.decisions import ErrorRates
 from oed.design import Design, design
 from oed.problem import DesignProblem
 from oed.spectra.multisines import Multisines
 from oed.targets.effect_detection import EffectDetection
 
 SIGMA, SIZE, POWER, LEVEL = 0.01, 0.02, 0.9, 0.05
+SHARES = (0.0, 0.5, 1.0, 1.5)
 POINTS = np.linspace(-1, 1, 5)[:, None]
 FAMILY = Multisines(PERIOD, levels=(2.0, 4.0, 8.0))
 MOST_PERIODS = 64
@@ -54,27 +57,24 @@ def seen(played: Any, flows: Any, seed: int) -> bool:
     return bool(found[0].p_value < LEVEL)
 
 
-def _runs(task: tuple[Any, Any, int, int]) -> list[bool]:
-    played, flows, first, last = task
-    return [seen(played, flows, seed) for seed in range(first, last)]
+def _seen(task: tuple[Any, Any, int]) -> bool:
+    return seen(*task)
 
 
-def rate(played: Any, size: float, runs: int, workers: int) -> float:
-    """The share of runs in which the stiffness is seen, with so much of it hidden."""
-    hidden = (("cubic_stiffness", size),) if size else ()
-    flows = steady(played, hidden)
-    edges = np.linspace(0, runs, 4 * workers + 1).astype(int)
-    parts = over(_runs, [(played, flows, int(a), int(b)) for a, b in pairwise(edges)], workers)
-    return float(np.mean([one for part in parts for one in part]))
+def measured(played: Any, size: float, runs: int, workers: int) -> dict[str, Any]:
+    """How often the stiffness is seen with so much of it hidden."""
+    flows = steady(played, (("cubic_stiffness", size),) if size else ())
+    return rate(over(_seen, [(played, flows, seed) for seed in range(runs)], workers))
 
 
-def study(runs: int, workers: int, size: float = SIZE) -> dict[str, Any]:
-    """The design with its certificate, and what was measured with it."""
-    found = design(problem(size))
+def study(runs: int, workers: int) -> dict[str, Any]:
+    """The design with its certificate, and the power by the size of what is hidden."""
+    found = design(problem())
     played = [(one.operating_point[0], one.spectrum) for one in found.experiments]
-    decision = found.decisions[0][1]
+    variance, rates = found.decisions[0][1].variance, ErrorRates(POWER, LEVEL)
+    sizes = [share * SIZE for share in SHARES]
     return {
-        "cubic stiffness": size,
+        "cubic stiffness": SIZE,
         "noise standard deviation": SIGMA,
         "asked power": POWER,
         "level": LEVEL,
@@ -82,13 +82,12 @@ def study(runs: int, workers: int, size: float = SIZE) -> dict[str, Any]:
         "lower bound": found.lower_bound,
         "certified gap": found.gap,
         "energy of whole periods": found.total_energy,
+        "expected standard deviation": float(np.sqrt(variance)),
         "experiments": _described(found),
-        "expected standard deviation": float(np.sqrt(decision.variance)),
-        "expected power": decision.power,
-        "99 % interval of 90 %": [float(x) for x in binom.ppf([0.005, 0.995], runs, POWER) / runs],
-        "measured power": rate(played, size, runs, workers),
-        "measured level": rate(played, 0.0, runs, workers),
-        "runs": runs,
+        "power": [
+            {"hidden": size, "expected": rates.power_at(size**2 / variance), **measured(played, size, runs, workers)}
+            for size in sizes
+        ],
     }
 
 
@@ -104,18 +103,62 @@ def _described(found: Design) -> list[dict[str, Any]]:
     ]
 
 
+def picture(found: dict[str, Any]) -> Report:
+    """Expected and measured power over the size of what is hidden."""
+    rows: Sequence[dict[str, Any]] = found["power"]
+    hidden = [row["hidden"] for row in rows]
+    figure = new_figure()
+    curve = np.linspace(0, hidden[-1], 60)
+    rates, variance = ErrorRates(POWER, LEVEL), found["expected standard deviation"] ** 2
+    figure.add_scatter(
+        x=curve, y=[100 * rates.power_at(e**2 / variance) for e in curve], name="expected", line={"color": colour(0)}
+    )
+    ends = np.array([row["interval"] for row in rows])
+    percent = np.array([row["percent"] for row in rows])
+    figure.add_scatter(
+        x=hidden,
+        y=percent,
+        mode="markers",
+        name="measured, 99 % interval",
+        marker={"color": colour(1)},
+        error_y={"array": ends[:, 1] - percent, "arrayminus": percent - ends[:, 0]},
+    )
+    figure.update_xaxes(title="cubic stiffness that is hidden")
+    figure.update_yaxes(title="seen (%)", range=[0, 102])
+    table = Table(
+        ("hidden", "expected (%)", "seen (%)", "99 % interval"),
+        tuple(
+            (
+                f"{r['hidden']:g}",
+                f"{100 * r['expected']:.1f}",
+                f"{r['percent']:.1f}",
+                "{:.1f} … {:.1f}".format(*r["interval"]),
+            )
+            for r in rows
+        ),
+    )
+    facts = (
+        Fact(f"{found['least energy']:.6g}", "least energy"),
+        Fact(f"{found['lower bound']:.6g}", "certified lower bound"),
+    )
+    plot = Plot(figure, "How often the score test at 5 % sees the stiffness.", table)
+    introduction = (
+        f"Designed to see a cubic stiffness of {SIZE:g} with {100 * POWER:g} % power; {rows[0]['of']} runs a point."
+    )
+    return Report("A design that would notice", introduction, facts, (Section("Power", blocks=(plot,)),))
+
+
 def main() -> None:
     """Parses the command line, runs, prints."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--runs", type=int, default=300)
-    parser.add_argument("--size", type=float, default=SIZE)
+    parser = command_line(__doc__ or "", runs=300, page=True)
     parser.add_argument("--workers", type=int, default=2)
-    parser.add_argument("--output", type=Path, default=None)
     options = parser.parse_args()
-    summary = study(options.runs, options.workers, options.size)
-    print(json.dumps(summary, indent=1))
-    if options.output is not None:
-        options.output.write_text(json.dumps(summary, indent=1) + "\n")
+    found = study(options.runs, options.workers)
+    print_table([{name: value for name, value in found.items() if isinstance(value, float)}])
+    print_table(found["power"])
+    write_json(found, options.output)
+    if options.page:
+        write(picture(found), options.page)
 
 
 if __name__ == "__main__":

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from benchmarks.deciding_experiments import PAIRS, one_run, summary
+from app.report.page import render
+from benchmarks.deciding_experiments import PAIRS, one_run, picture, summary
 from benchmarks.detection_power import problem, seen
 from benchmarks.virtual_bench.played import steady
 from oed.design import design
@@ -22,7 +23,9 @@ def test_a_cubic_stiffness_is_seen_as_often_as_designed() -> None:
 def test_a_designed_experiment_decides_what_the_first_left_open() -> None:
     stiffness, sensor = PAIRS[1].effects
     runs = [one_run((1, stiffness, 0, False)), one_run((1, sensor, 0, False))]
-    table = summary(runs)[" / ".join(PAIRS[1].effects)]
+    name = " / ".join(PAIRS[1].effects)
+    table = summary(runs)[name]
     assert table["designed"]["right"] == 1.0
     assert table["designed"]["energy over budget"] <= 1.0
     assert max(max(run["first"].values()) for run in runs) <= 0.95
+    assert name in render(picture(summary(runs)))
