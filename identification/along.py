@@ -7,6 +7,7 @@ import numpy as np
 from identification.affine_estimate import AffineEstimate
 from identification.affine_state_space import propagate
 from identification.arrays import FloatArray
+from identification.confidence import covariance_root
 from identification.errors import MisuseError, RangeError
 from identification.models import LpvModel
 from identification.parameter_varying import ParameterVaryingStateSpace
@@ -60,7 +61,7 @@ def simulate_rational(
         return Simulation(y[:, None], None)
     phi = np.concatenate([*(-_delayed(y, i + 1)[:, None] for i in range(n_a)), delayed], axis=1)
     variance = np.zeros(len(y))
-    for direction in _root(model.covariance[: model.plant_size, : model.plant_size]).T:
+    for direction in covariance_root(model.covariance[: model.plant_size, : model.plant_size]).T:
         change = np.zeros(len(model.theta))
         change[: model.plant_size] = direction
         moved = _along(model.dependence, change, scheduling)[:, :n]
@@ -112,11 +113,3 @@ def _filtered(transition: FloatArray, forcing: FloatArray) -> FloatArray:
     driven[:, 0] = forcing
     with np.errstate(over="ignore", invalid="ignore"):
         return np.asarray(propagate(transition, driven, np.zeros(n))[1:, 0])
-
-
-def _root(covariance: FloatArray) -> FloatArray:
-    scale = np.sqrt(np.maximum(np.diagonal(covariance), 0.0))
-    size = np.where(scale > 0, scale, 1.0)
-    values, vectors = np.linalg.eigh(covariance / np.outer(size, size))
-    kept = values > 1e-14 * max(float(values[-1]), 0.0)
-    return np.asarray(size[:, None] * vectors[:, kept] * np.sqrt(values[kept]))

@@ -1,4 +1,4 @@
-"""Confidence bands of gain and phase from the covariance of a complex frequency response."""
+"""Confidence bands of gain and phase from the covariance of a complex frequency response; roots of covariances."""
 
 from dataclasses import dataclass
 
@@ -45,3 +45,12 @@ def gain_and_phase(response: ComplexArray, covariance: FloatArray) -> GainAndPha
     with np.errstate(divide="ignore", invalid="ignore"):
         phase_deviation = np.where(gain > 0, np.sqrt(np.maximum(across_variance, 0.0)) / gain, np.inf)
     return GainAndPhase(gain, np.unwrap(np.angle(response)), np.sqrt(np.maximum(gain_variance, 0.0)), phase_deviation)
+
+
+def covariance_root(covariance: FloatArray) -> FloatArray:
+    """R (k, r) with R Rᵀ = P (k, k), one column a direction that is not known exactly."""
+    scale = np.sqrt(np.maximum(np.diagonal(covariance), 0.0))
+    size = np.where(scale > 0, scale, 1.0)
+    values, vectors = np.linalg.eigh(covariance / np.outer(size, size))
+    kept = values > 1e-14 * max(float(values[-1]), 0.0)
+    return np.asarray(size[:, None] * vectors[:, kept] * np.sqrt(values[kept]))

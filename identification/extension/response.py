@@ -37,7 +37,7 @@ def linear_response(model: ExtendedModel, points: ArrayLike, omega: FloatArray) 
         model = replace(model, covariance=model.base.covariance[:size, :size])
     held = [_acts_linearly(one.effect) for one in model.effects]
     left_out = tuple(one.effect for one, kept in zip(model.effects, held, strict=True) if not kept)
-    kept = _with_only(model, held)
+    kept = with_only(model, held)
     batch = _unit_input(model.base.dependence.points(points), omega)
     with np.errstate(divide="ignore", invalid="ignore"):
         flow = kept.respond(batch)
@@ -49,14 +49,14 @@ def coefficients(model: ExtendedModel, points: ArrayLike) -> FloatArray:
     """ζ(p) at the points (M, s) with what effects change of it, (M, n)."""
     changing = [isinstance(one.effect, Coefficient) and _acts_linearly(one.effect) for one in model.effects]
     batch = _unit_input(model.base.dependence.points(points), np.ones(1))
-    return _with_only(model, changing).respond(batch).setting.zeta
+    return with_only(model, changing).respond(batch).setting.zeta
 
 
 def _acts_linearly(effect: Effect) -> bool:
     return isinstance(effect, LINEAR) and not effect.of_measurements
 
 
-def _with_only(model: ExtendedModel, held: list[bool]) -> ExtendedModel:
+def with_only(model: ExtendedModel, held: list[bool]) -> ExtendedModel:
     """The model with some of its effects, and their part of the joint covariance."""
     chosen = [np.ones(model.base.plant_size, dtype=np.bool_)]
     chosen += [np.full(len(one.parameters()), kept) for one, kept in zip(model.effects, held, strict=True)]
