@@ -11,6 +11,7 @@ from identification.diagnosis.diagnose import STRICT, Diagnosis, diagnose
 from identification.extension.fit import Fit, fit
 from identification.extension.model import ExtendedModel
 from identification.places.place import Effect
+from identification.places.simulate import NoSteadyStateError
 
 LARGEST = 4
 NEGLIGIBLE = 0.005
@@ -57,15 +58,17 @@ def staircase(
 ) -> tuple[Step, ...]:
     """Diagnose, add the announced effect of most weight, fit θ and all effects together, and again.
 
-    Ends at the noise floor (no effect is announced), after `largest` effects, or when an effect would raise
-    the error on held-out data.
+    Ends at the noise floor (no effect is announced), after `largest` effects, or when an effect would raise the error
+    on held-out data or leave the model without a steady state there.
     """
-    current = diagnose(model, batches, effects, degree, seed)
-    steps = [_step(current.base, batches, held_out, current)]
-    while current.best is not None and len(steps) <= largest:
-        grown = refined(current.best.fit)
-        current = diagnose(grown.model, batches, effects, degree, seed)
-        found = _step(grown, batches, held_out, current)
+    first = diagnose(model, batches, effects, degree, seed)
+    steps = [_step(first.base, batches, held_out, first)]
+    while (best := steps[-1].diagnosis.best) is not None and len(steps) <= largest:
+        try:
+            grown = refined(best.fit)
+            found = _step(grown, batches, held_out, diagnose(grown.model, batches, effects, degree, seed))
+        except NoSteadyStateError:
+            break
         if _rises(found.held_out_error, steps[-1].held_out_error):
             break
         steps.append(found)

@@ -1,6 +1,6 @@
 """Right effects first, those alike in one set, nothing invented, everything else called unknown."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
@@ -11,6 +11,7 @@ from identification.diagnosis.evidence import refit_short_list
 from identification.diagnosis.missing import missing_response
 from identification.diagnosis.staircase import conclusion, staircase
 from identification.effects.coulomb_friction import CoulombFriction
+from identification.effects.cubic_stiffness import CubicStiffness
 from identification.effects.delay import Delay
 from identification.effects.hysteresis import Hysteresis
 from identification.effects.inductance import Inductance
@@ -38,9 +39,9 @@ from tests.support.oscillators import (
 SIGMA = 5e-3
 
 
-def with_force(force, seed=1, gain=lambda u: u):
+def with_force(force, seed=1, gain=lambda u: u, stronger=1.0):
     g = np.random.default_rng(seed)
-    inputs = [phasors(g, level) for level in (8.0, 5.0, 8.0, 5.0, 8.0)]
+    inputs = [phasors(g, stronger * level) for level in (8.0, 5.0, 8.0, 5.0, 8.0)]
     return gather(records([(a, integrated(p, a, force, gain)) for p, a in zip(POINTS, inputs, strict=True)], g, SIGMA))
 
 
@@ -217,3 +218,19 @@ def test_an_effect_that_leaves_more_than_noise_is_not_announced_with_confidence(
     assert found.best.weight > 0.95
     assert found.remaining.p_value < 1e-3
     assert not replace(found, verdict="explained").confident
+
+
+@dataclass(frozen=True)
+class Breaking(CubicStiffness):
+    """A cubic stiffness up to a position of six, and a force beyond that no steady state can bear."""
+
+    def force(self, x, velocity):
+        return np.where(abs(x).max(axis=1, keepdims=True) > 6, 1e9 * x, x**3)
+
+
+def test_the_staircase_stops_below_an_effect_without_steady_state_at_held_out_data():
+    data, stronger = (with_force(lambda x, v: 15 * x**3, stronger=factor) for factor in (1, 20))
+    (alone,) = staircase(MODEL, data, stronger, effects=(Breaking(),))
+    assert alone.model.effects == ()
+    assert alone.diagnosis.best is not None
+    assert len(staircase(MODEL, data, data, effects=(Breaking(),))) == 2
