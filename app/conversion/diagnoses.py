@@ -38,7 +38,7 @@ def findings(found: Diagnosis, experiments: Sequence[Experiment]) -> dict[str, A
         "explainedShare": found.explained_share,
         "ranking": [one.as_json() for one in ranking],
         "confusability": found.confusability[np.ix_(order, order)].tolist(),
-        "visibility": [_visibility(found, one).as_json() for one in found.visibility],
+        "visibility": [_visibility(one).as_json() for one in found.visibility],
         "missing": [one.as_json() for one in _missing(found, experiments)],
     }
 
@@ -79,13 +79,12 @@ def _evidence(one: refits.Evidence) -> Evidence:
     )
 
 
-def _visibility(found: Diagnosis, one: Visibility) -> EffectVisibility:
-    judged = all(one.effect.judgeable(flow) for flow in found.base.flows)
+def _visibility(one: Visibility) -> EffectVisibility:
     return EffectVisibility(
         kind=one.effect.kind,
         title=one.effect.title,
         quantity=quantity_of(one.effect),
-        status="visible" if one.amplitude is not None else "invisible" if judged else "notJudged",
+        status="visible" if one.amplitude is not None else "invisible" if one.judged else "notJudged",
         detectable_amplitude=one.amplitude,
         kept=float(one.kept),
         reason=one.reason,

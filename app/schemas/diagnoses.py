@@ -89,7 +89,8 @@ class EffectVisibility(CamelModel):
     title: str
     quantity: str | None = Field(default=None, description="logged quantity, with its unit, that it depends on")
     status: Literal["visible", "invisible", "notJudged"] = Field(
-        description="invisible: the fitted parameters take up all of it; notJudged: the data are not of the kind needed"
+        description="invisible: the fitted parameters take up all of it; notJudged: the data are not of the kind"
+        " needed, or the model holds it, or another curve of fitted shape in its place, already"
     )
     detectable_amplitude: Double | None = Field(description="found with 90 % power by a test at 5 %; null if never")
     kept: Double = Field(description="share of its change of the output that the fitted parameters leave")

@@ -31,12 +31,16 @@ ALMOST = 0.98
 
 @dataclass(frozen=True, eq=False)
 class Visibility:
-    """The amplitude of an effect that a test at 5 % would find with 90 % power in this experiment; None: never."""
+    """The amplitude of an effect that a test at 5 % would find with 90 % power in this experiment; None: never.
+
+    `reason` says why it is not seen, or, where it is not `judged`, why it was not looked for.
+    """
 
     effect: Effect
     amplitude: float | None
     kept: float
     reason: str = ""
+    judged: bool = True
 
 
 @dataclass(frozen=True, eq=False)
@@ -166,6 +170,6 @@ def confusability(scores: Sequence[Score]) -> FloatArray:
 
 def _visibility(candidate: Candidate) -> Visibility:
     if not candidate.signatures:
-        return Visibility(candidate.effect, None, 0.0, candidate.why_not)
+        return Visibility(candidate.effect, None, 0.0, candidate.why_not, candidate.judged)
     best = max(candidate.signatures, key=lambda one: float(np.linalg.norm(one.gain)))
     return Visibility(best.placed.effect, DETECTION / float(np.linalg.norm(best.gain, 2)), best.kept)

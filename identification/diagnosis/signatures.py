@@ -44,12 +44,16 @@ class Signature:
 
 @dataclass(frozen=True, eq=False)
 class Candidate:
-    """An effect with the variants that this experiment shows; `why_not` says so when it shows none."""
+    """An effect with the variants that this experiment shows; `why_not` says so when it shows none.
+
+    `judged`: False when it was not looked for, because of the data or of what the model holds already.
+    """
 
     effect: Effect
     signatures: tuple[Signature, ...]
     looked_at: int = 1
     why_not: str = ""
+    judged: bool = True
 
 
 def tangent_space(fit: Fit) -> FloatArray:
@@ -68,10 +72,10 @@ def candidates(fit: Fit, effects: Sequence[Effect], degree: int = 0) -> tuple[Ca
 
 def _candidate(fit: Fit, effect: Effect, degree: int, space: FloatArray) -> Candidate:
     if not all(effect.judgeable(flow) for flow in fit.flows):
-        return Candidate(effect, (), why_not=RECORDS if effect.needs_records else LOGGED)
+        return Candidate(effect, (), why_not=RECORDS if effect.needs_records else LOGGED, judged=False)
     taken = _taken(effect, [one.effect for one in fit.model.effects])
     if taken:
-        return Candidate(effect, (), why_not=taken)
+        return Candidate(effect, (), why_not=taken, judged=False)
     variables = fit.flows[0].setting.points.shape[1]
     variants = [placed(one, degree, variables) for one in _variants(fit, effect)]
     if not variants:

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.linalg import block_diag
 
 from identification.affine_estimate import AffineEstimate
 from identification.affine_state_space import AffineStateSpace
@@ -212,11 +213,8 @@ def affine_estimate(model: ExtendedModel) -> tuple[AffineEstimate, FloatArray | 
 
 def _on_both_sides(matrix: FloatArray, joint: FloatArray) -> FloatArray:
     """diag(M, I) P diag(M, I)ᵀ."""
-    rows, columns = matrix.shape
-    whole = np.eye(rows + len(joint) - columns, len(joint))
-    whole[:rows, :columns] = matrix
-    whole[rows:, columns:] = np.eye(len(joint) - columns)
-    whole[:rows, columns:] = 0.0
+    beside = np.eye(len(joint) - matrix.shape[1])
+    whole = block_diag(matrix, beside)
     return np.asarray(whole @ joint @ whole.T)
 
 

@@ -153,6 +153,13 @@ def test_variances_that_are_hardly_known_raise_no_false_alarms():
 def test_a_curve_of_fitted_shape_is_not_joined_by_another_in_its_place():
     spring = placed(DeadBandSpring(gap=0.1), 0, 1, 1.0)
     found = fit(MODEL.plus(spring), Rows(batches(2)), iterations=1)
-    reasons = {one.effect.kind: one.why_not for one in candidates(found, library())}
+    seen = candidates(found, library())
+    reasons = {one.effect.kind: one.why_not for one in seen}
     assert (reasons["dead_band_spring"], reasons["gravity"], reasons["hysteresis"]) == (TWICE, SHAPED, SHAPED)
     assert not any(reasons[kind] for kind in ("cubic_stiffness", "coulomb_friction", "saturation"))
+    assert {one.effect.kind for one in seen if not one.judged} == {
+        "dead_band_spring",
+        "gravity",
+        "hysteresis",
+        "second_variable",
+    }

@@ -7,7 +7,10 @@ import pytest
 
 from identification.affine_estimate import AffineEstimate
 from identification.affine_state_space import AffineStateSpace
+from identification.effects.delay import Delay
 from identification.errors import MisuseError
+from identification.extension.model import placed
+from identification.extension.response import linear_response
 from identification.outcome import Outcome
 from identification.scheduling import SchedulingVariable
 from identification.varying.affine_parameters import AffineSizes
@@ -82,3 +85,18 @@ def test_a_model_without_covariance_has_none_and_one_with_several_channels_is_re
     wide = random_model(np.random.default_rng(3), 2, 1, 2, 1)
     with pytest.raises(MisuseError, match="2 inputs"):
         frozen(AffineEstimate(wide, Outcome("converged"), ()))
+
+
+def test_effects_keep_their_covariance_with_the_parameters_and_their_own() -> None:
+    """Kept and read again: θ loses what the state basis takes, the delay nothing."""
+    found = estimate(6, 2, 1)
+    free = AffineSizes.of(found.model).free
+    root = np.random.default_rng(2).standard_normal((free + 1, free + 1))
+    model = frozen(found).plus(placed(Delay(), 0, 1, 0.3))
+    model = dataclasses.replace(model, covariance=1e-4 * root @ root.T)
+    kept, joint = affine_estimate(model)
+    again = frozen(kept, model.effects, joint)
+    assert again.covariance[-1, -1] == pytest.approx(model.covariance[-1, -1])
+    one, other = (linear_response(each, [[0.4]], OMEGA) for each in (model, again))
+    assert other.response == pytest.approx(one.response)
+    assert other.covariance == pytest.approx(one.covariance, rel=1e-6)
