@@ -12,6 +12,7 @@ from app.schemas.experiments import (
     Experiment,
     ExperimentKind,
     FrequencyResponseRequest,
+    LoggedQuantity,
     MatrixFrequencyResponseRequest,
     TimeRecordRequest,
 )
@@ -90,9 +91,14 @@ def kept_measurement(experiment: Experiment, arrays: Mapping[str, NDArray[Any]])
     )
 
 
+def quantities_by_name(quantities: Sequence[LoggedQuantity]) -> dict[str, float]:
+    """Logged quantities by name and unit, such as temperature [K]: other units are another quantity."""
+    return {f"{one.name} [{one.unit}]" if one.unit else one.name: one.value for one in quantities}
+
+
 def logged_values(experiment: Experiment) -> dict[str, float]:
-    """The logged quantities by name and unit, such as temperature [K]: other units are another quantity."""
-    return {f"{one.name} [{one.unit}]" if one.unit else one.name: one.value for one in experiment.logged_quantities}
+    """The logged quantities of an experiment by name and unit."""
+    return quantities_by_name(experiment.logged_quantities)
 
 
 def kept_batches(given: Sequence[Mapping[str, Any]], arrays: ArrayStore, mean_value: bool) -> tuple[Batch, ...]:

@@ -88,7 +88,11 @@ def create_simulation(
     response: Response,
     key: IdempotencyKey = None,
 ) -> Job:
-    """Simulate a model in discrete time along p(t), from rest, e.g. as a dry run of an experiment."""
+    """Simulate a model, e.g. as a dry run of an experiment.
+
+    Along p(t) from rest, in discrete time; or one period of the steady state at operating points, for rational models
+    of every kind, with effects or without, and for models from varying scheduling with one input and output.
+    """
     return accepted(simulations.submit(container, modelId, body, key), response)
 
 

@@ -1,4 +1,4 @@
-"""Simulations along p(t): asked for, made in a job, and their samples."""
+"""Simulations: asked for, made in a job, and their samples."""
 
 from typing import Any
 
@@ -22,20 +22,22 @@ from app.schemas.simulations import (
     SimulationData,
     SimulationList,
     SimulationRequest,
+    Steady,
 )
 from app.services.documents import fields, items, named, of_plant
 from app.services.experiments import experiment_of
 from app.services.fitting import check_sample_time
 from app.services.jobs import fingerprint
-from app.services.models import model_of, require_without_effects
+from app.services.models import model_of
 from app.services.plants import plant_of
-from app.services.signals import signals_of
+from app.services.steady_simulations import designed_signal, stated_fields, steady_payload
 from app.store.resources import Resource, ResourceRepository
 from identification.confidence import QUANTILE_95
 from identification.varying.records import require_within_range
 
 KIND = "simulations"
 MOST_SAMPLES = 1_000_000
+INSTEAD = "play a periodic input at operating points instead (kind periodic), or name another model"
 Arrays = dict[str, NDArray[Any]]
 
 
@@ -44,30 +46,31 @@ def submit(container: Container, model_id: str, request: SimulationRequest, key:
     resources = container.resources
     model = model_of(resources.get("models", model_id))
     plant = plant_of(resources.get("plants", model.plant_id))
+    steady = isinstance(request.excitation, Steady)
+    task = steady_payload(container, plant, model, request) if steady else _payload(container, plant, model, request)
+    mark = fingerprint("createSimulation", model_id, request.model_dump(mode="json"))
+    return container.ledger.submit("steady_simulation" if steady else "simulation", task, KIND, plant.id, key, mark)
+
+
+def _payload(container: Container, plant: Plant, model: Model, request: SimulationRequest) -> dict[str, Any]:
     sample_time = _sample_time(model)
     arrays, pointers = _excitation(container, plant, sample_time, request)
     with pointing(pointers, pointers["scheduling"]):
         _check(plant, arrays, pointers)
         require_within_range(scheduling_variables(plant), arrays["scheduling"])
-    payload = {
+    return {
         "plant": plant.as_json(),
         "model": model.as_json(),
         "arrays": container.arrays.put(arrays),
         "pointers": pointers,
-        "stated": {
-            "name": request.name,
-            "description": request.description,
-            "experimentId": getattr(request.excitation, "experiment_id", None),
-            "signalsId": getattr(request.excitation, "signals_id", None),
-            "sampleTimeSeconds": sample_time,
-        },
+        "stated": stated_fields(request, sample_time),
     }
-    mark = fingerprint("createSimulation", model_id, request.model_dump(mode="json"))
-    return container.ledger.submit("simulation", payload, KIND, plant.id, key, mark)
 
 
 def _sample_time(model: Model) -> float:
-    require_without_effects(model, "/modelId", "path")
+    if model.effects:
+        kinds = ", ".join(one.kind for one in model.effects)
+        raise UnprocessableError.at("/modelId", f"{kinds} cannot be followed along p(t); {INSTEAD}", "path")
     structure = model.structure
     if isinstance(structure, DiscreteTimeStructure | DiscreteStateSpaceStructure) and not getattr(
         structure, "delay", False
@@ -79,7 +82,9 @@ def _sample_time(model: Model) -> float:
         return structure.sample_time_seconds
     what = "an estimated delay" if not isinstance(structure, ContinuousTimeStructure) else "continuous time"
     raise UnprocessableError.at(
-        "/modelId", f"only models in discrete time without an estimated delay are simulated; this has {what}", "path"
+        "/modelId",
+        f"along p(t) only models in discrete time without an estimated delay are simulated, this has {what}; {INSTEAD}",
+        "path",
     )
 
 
@@ -98,6 +103,7 @@ def _excitation(
         return _of_experiment(container, plant, sample_time, asked.experiment_id), dict.fromkeys(
             ("input", "scheduling"), pointer
         )
+    assert isinstance(asked, SignalExcitation), "steady states have a payload of their own"
     return _of_signal(container, plant, asked), dict.fromkeys(("input", "scheduling"), "/excitation/signalsId")
 
 
@@ -116,13 +122,8 @@ def _of_experiment(container: Container, plant: Plant, sample_time: float, exper
 
 
 def _of_signal(container: Container, plant: Plant, asked: SignalExcitation) -> Arrays:
-    pointer = "/excitation/signalsId"
-    row = of_plant(named(container.resources, "signals", asked.signals_id, pointer), plant.id, pointer)
-    made = signals_of(row).signals
-    if asked.index >= len(made):
-        raise UnprocessableError.at("/excitation/index", f"there are {len(made)} signals, numbered from 0")
-    signal = made[asked.index]
-    u = np.tile(container.arrays.get(row.arrays or "")[f"period{asked.index}"], signal.periods)[:, None]
+    period, signal = designed_signal(container, plant, asked.signals_id, asked.index)
+    u = np.tile(period, signal.periods)[:, None]
     return {"input": u, "scheduling": np.tile(np.array(signal.operating_point), (len(u), 1))}
 
 
@@ -169,13 +170,17 @@ def data(container: Container, simulation_id: str) -> SimulationData:
         inputs=arrays["input"].T.tolist(),
         scheduling=arrays["scheduling"].T.tolist(),
         outputs=arrays["output"].T.tolist(),
+        operating_points=None if "operatingPoints" not in arrays else arrays["operatingPoints"].tolist(),
         lower95=None if band is None else band[0].T.tolist(),
         upper95=None if band is None else band[1].T.tolist(),
     )
 
 
 def as_file(container: Container, simulation_id: str, file_format: Format) -> bytes:
-    """Time and one column a channel: u1, y1, p1, …, and lower1, upper1 of each output where they are known."""
+    """Time and one column a channel: u1, y1, p1, …, and lower1, upper1 of each output where they are known.
+
+    Of a steady state y1, y2, … are at the operating points, and p1, … stands in the file of a single one.
+    """
     resource = container.resources.get(KIND, simulation_id)
     arrays = container.arrays.get(resource.arrays or "")
     columns: Arrays = {"time": np.arange(len(arrays["output"])) * simulation_of(resource).sample_time_seconds}

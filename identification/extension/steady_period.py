@@ -165,7 +165,9 @@ def _settled(model: ExtendedModel, batch: Batch, point: FloatArray) -> Flow:
     structure = model.base.structure
     poles = structure.poles(flow.setting.zeta)
     if not np.all(abs(poles) < 1 if structure.is_discrete else poles.real < 0):
-        raise NoSteadyStateError(f"{where} the plant of the model is unstable, so there is no steady state", "points")
+        raise NoSteadyStateError(
+            f"{where} the plant of the model is unstable, so there is no steady state", "operating_points"
+        )
     _require_mean_known(model, flow, where)
     if not np.all(np.isfinite(flow.output)):
         raise RangeError(f"{where} the output leaves the range of numbers; choose other units", "input")

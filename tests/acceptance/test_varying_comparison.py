@@ -127,9 +127,9 @@ def late(api: Api, plant: Json) -> list[str]:
     return experiments
 
 
-def test_what_still_experiments_lack_is_diagnosed_and_added(
-    api: Api, model: Json, late: list[str], records: list[str]
-) -> None:
+@pytest.fixture(scope="module")
+def grown(api: Api, model: Json, late: list[str]) -> Json:
+    """The model with the delay that a diagnosis found."""
     found = api.made("/diagnoses", {"modelId": model["id"], "experimentIds": late[:5]})
     assert found["verdict"] in ("explained", "partlyExplained")
     assert "delay" in found["announced"]
@@ -139,7 +139,22 @@ def test_what_still_experiments_lack_is_diagnosed_and_added(
         "heldOutExperimentIds": late[5:],
         "diagnosisId": found["id"],
     }
-    grown = api.made(f"/models/{model['id']}/extensions", request)
+    return api.made(f"/models/{model['id']}/extensions", request)
+
+
+def test_its_steady_state_is_simulated(api: Api, grown: Json) -> None:
+    waves = np.exp(2j * np.pi * np.arange(20) / 20)
+    steady = {"kind": "periodic", "input": waves.imag.tolist(), "sampleTimeSeconds": 1.0, "operatingPoints": [[0.5]]}
+    made = api.made(f"/models/{grown['id']}/simulations", {"excitation": steady})
+    data = api.get(f"/simulations/{made['id']}/data")
+    wanted = np.imag(delayed_response(0.5, np.array([2 * np.pi / 20])) * waves)
+    assert np.linalg.norm(data["outputs"][0] - wanted) < 0.02 * np.linalg.norm(wanted)
+    assert made["outputs"][0]["deviation"] > 0
+
+
+def test_what_still_experiments_lack_is_diagnosed_and_added(
+    api: Api, model: Json, grown: Json, late: list[str], records: list[str]
+) -> None:
     assert (grown["origin"], grown["parentId"], grown["effects"][0]["kind"]) == ("extended", model["id"], "delay")
     report = grown["extension"]
     assert report["after"]["heldOut"] < 0.05 < report["before"]["heldOut"]
