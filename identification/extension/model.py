@@ -11,7 +11,7 @@ from identification.comparison.batch import Batch
 from identification.errors import MisuseError
 from identification.models import LpvModel
 from identification.places.place import Effect, Flow, Setting
-from identification.places.simulate import simulate
+from identification.places.simulate import Solver, simulate
 
 SLOPE_STEP = 1e-4
 
@@ -108,11 +108,11 @@ class ExtendedModel:
         slope = np.stack(slopes, axis=-1)[:, : self.base.structure.n_plant]
         return Setting(self.base.structure, transfer @ self.base.theta, (p - low) / half - 1, transfer, slope)
 
-    def respond(self, batch: Batch, start: ComplexArray | None = None) -> Flow:
+    def respond(self, batch: Batch, start: ComplexArray | None = None, solve: Solver | None = None) -> Flow:
         """The steady signals of a batch; see `identification.places.simulate`."""
         setting = self.setting(batch.points)
         acting = [(one.effect, one.amplitude(setting, batch)) for one in self.effects]
-        return simulate(setting, acting, batch, start)
+        return simulate(setting, acting, batch, start, solve)
 
     def output(self, batch: Batch) -> ComplexArray:
         """The lines of the output, (M, K)."""

@@ -1,7 +1,7 @@
 """One period of the steady output of a model with effects, for a periodic input at operating points held still."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,12 +14,14 @@ from identification.errors import MisuseError, RangeError, ShapeError
 from identification.extension.model import ExtendedModel, PlacedEffect, require_matching
 from identification.extension.response import with_only
 from identification.places.linear import Factor, Parallel
-from identification.places.nonlinear import Added
+from identification.places.newton import newton
+from identification.places.nonlinear import Added, Feedback
 from identification.places.place import Effect, Flow
 from identification.places.simulate import NoSteadyStateError
 
 FINER = 4
 STEP = 0.1
+SMALLEST_SHARE = 1 / 16
 ROUNDING, NEGLIGIBLE = 1e-14, 1e-9
 OF_MEASUREMENTS = "it belongs to single measurements, not to the plant"
 OF_PERIOD = "it is a disturbance in step with the period in which it was found, not an answer to the input"
@@ -63,7 +65,7 @@ def steady_period(
     samples; in continuous time u is the sum of its lines between them, and what forces and sensors add is
     followed up to four times the Nyquist frequency. `logged`: values of the quantities that the model depends on
     beside p. Effects of single measurements and disturbances over a period are left out. Where there are several
-    steady states, it is the one next to that of the linear plant.
+    steady states it is one of them, as a rule the one next to that of the linear plant.
 
     Raises NoSteadyStateError, naming the operating point, where there is none: the plant is unstable there, or an
     effect too strong; ShapeError, RangeError and MisuseError for input, points, sampling or quantities that do not fit.
@@ -156,7 +158,7 @@ def _settled(model: ExtendedModel, batch: Batch, point: FloatArray) -> Flow:
     where = f"at the operating point ({', '.join(f'{value:g}' for value in point)})"
     try:
         with np.errstate(all="ignore"):
-            flow = model.respond(batch)
+            flow = _grown(model, batch)
     except NoSteadyStateError as error:
         raise NoSteadyStateError(
             f"{where} no steady state was found: the effects are too strong for this input; play it at a lower level",
@@ -172,6 +174,30 @@ def _settled(model: ExtendedModel, batch: Batch, point: FloatArray) -> Flow:
     if not np.all(np.isfinite(flow.output)):
         raise RangeError(f"{where} the output leaves the range of numbers; choose other units", "input")
     return flow
+
+
+def _grown(model: ExtendedModel, batch: Batch) -> Flow:
+    """The response; where the forces of effects are too strong at once, they grow from a part to the whole."""
+    share, step, core = 0.0, 1.0, None
+    while True:
+        try:
+            flow = _with_forces(model, share + step).respond(batch, core, newton)
+        except NoSteadyStateError:
+            step /= 4
+            if step < SMALLEST_SHARE:
+                raise
+            continue
+        share, core = share + step, flow.core
+        if share >= 1:
+            return flow
+
+
+def _with_forces(model: ExtendedModel, share: float) -> ExtendedModel:
+    effects = [
+        replace(one, coefficients=share * one.coefficients) if isinstance(one.effect, Feedback) else one
+        for one in model.effects
+    ]
+    return replace(model, effects=tuple(effects))
 
 
 def _require_mean_known(model: ExtendedModel, flow: Flow, where: str) -> None:
@@ -211,7 +237,9 @@ def _deviation(model: ExtendedModel, batch: Batch, flow: Flow) -> FloatArray | N
         size = STEP / max(1.0, float(abs(direction * relative).max()))
         try:
             up, down = (
-                model.with_parameters(model.parameters + sign * size * direction).respond(batch, flow.core).output
+                model.with_parameters(model.parameters + sign * size * direction)
+                .respond(batch, flow.core, newton)
+                .output
                 for sign in (1, -1)
             )
         except NoSteadyStateError:

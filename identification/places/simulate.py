@@ -13,6 +13,8 @@ from identification.places.nonlinear import Actuator, Added, Feedback, Sensor
 from identification.places.place import Effect, Flow, Setting, derivative
 
 Acting = tuple[Effect, FloatArray]
+Update = Callable[[ComplexArray], ComplexArray]
+Solver = Callable[[Update, ComplexArray, int], ComplexArray]
 MEMORY, LIMIT = 4, 60
 DIVERGED = 1e3
 
@@ -21,13 +23,20 @@ class NoSteadyStateError(MisuseError):
     """The fixed point of the feedback was not found: the effect is too strong to be computed from this start."""
 
 
-def simulate(setting: Setting, acting: Sequence[Acting], batch: Batch, start: ComplexArray | None = None) -> Flow:
+def simulate(
+    setting: Setting,
+    acting: Sequence[Acting],
+    batch: Batch,
+    start: ComplexArray | None = None,
+    solve: Solver | None = None,
+) -> Flow:
     """The signals of a batch at the coefficients of `setting` for effects with amplitudes e (shapes, M).
 
         u → g(u) → [ X = G (U − F{f(x, ẋ)}) ] → + modes → · factor, + parallel → h(y) → + d(t)
 
-    `start` (M, K): X to begin the search for the fixed point with. Raises NoSteadyStateError when there is none to be
-    found, and MisuseError for effects that need records when the batch holds frequency responses.
+    `start` (M, K): X to begin the search for the fixed point with; `solve` finds it, `fixed_point` when not given.
+    Raises NoSteadyStateError when there is none to be found, and MisuseError for effects that need records when the
+    batch holds frequency responses.
     """
     if batch.signals is None and any(effect.needs_records for effect, _ in acting):
         raise MisuseError("effects that act on signals need periodic records", "effects")
@@ -35,7 +44,8 @@ def simulate(setting: Setting, acting: Sequence[Acting], batch: Batch, start: Co
     gradient = setting.structure.plant_gradient(setting.zeta, batch.omega)
     response = _response(setting, acting, batch)
     entering = _actuated(setting, acting, batch)
-    core, drive = _core(response, entering, _forces(acting), batch, start, _finer(setting, acting, Feedback))
+    finer = _finer(setting, acting, Feedback)
+    core, drive = _core(response, entering, _forces(acting), batch, start, finer, solve or fixed_point)
     factor, within, beside = np.ones_like(response), core, np.zeros_like(core)
     for effect, e in acting:
         if isinstance(effect, Factor):
@@ -93,6 +103,7 @@ def _core(
     batch: Batch,
     start: ComplexArray | None,
     finer: int,
+    solve: Solver,
 ) -> tuple[ComplexArray, ComplexArray]:
     """X and the drive U − F{f} (M, K)."""
     if not forces:
@@ -106,7 +117,7 @@ def _core(
         return np.asarray(entering - batch.spectrum(total))
 
     first, limit = (response * entering, 3 * LIMIT) if start is None else (start, LIMIT)
-    core = fixed_point(lambda x: response * drive(x), first, limit)
+    core = solve(lambda x: response * drive(x), first, limit)
     return core, drive(core)
 
 
@@ -124,9 +135,7 @@ def _measured(linear: ComplexArray, acting: Sequence[Acting], batch: Batch) -> C
     return output
 
 
-def fixed_point(
-    update: Callable[[ComplexArray], ComplexArray], start: ComplexArray, limit: int = LIMIT, tolerance: float = 1e-8
-) -> ComplexArray:
+def fixed_point(update: Update, start: ComplexArray, limit: int = LIMIT, tolerance: float = 1e-8) -> ComplexArray:
     """X = update(X) (M, K), each row by itself, by Anderson's mixing of the last four steps.
 
     Raises NoSteadyStateError when a row has not settled to `tolerance` of its size after `limit` steps.

@@ -49,6 +49,7 @@ def simulated(*effects: tuple[Effect, float], p: float = 0.5) -> SteadyPeriod:
     ("effect", "e", "force", "tolerance"),
     [
         (CubicStiffness(), 30.0, lambda x, v: 30.0 * x**3, 1e-4),
+        (CubicStiffness(), 800.0, lambda x, v: 800.0 * x**3, 1e-4),
         (QuadraticDamping(), 0.3, lambda x, v: 0.3 * abs(v) * v, 3e-5),
         (CoulombFriction(), 1.0, lambda x, v: np.tanh(v / 0.004), 4e-3),
     ],
@@ -144,11 +145,11 @@ def test_the_deviation_is_that_of_small_changes_of_all_parameters():
             [[0.5]],
             covariance_known=False,
         ).output[0]
-        for _ in range(300)
+        for _ in range(120)
     ]
     assert found.deviation is not None
     ratio = np.std(draws, axis=0) / found.deviation[0]
-    assert np.sqrt(np.mean(ratio**2)) == pytest.approx(1.0, abs=0.1)
+    assert np.sqrt(np.mean(ratio**2)) == pytest.approx(1.0, abs=0.15)
     assert steady_period(known, INPUT, SAMPLE_TIME, [[0.5]], covariance_known=False).deviation is None
 
 
