@@ -126,6 +126,7 @@ def test_a_record_is_seen_with_its_spectrum_and_what_was_understood(here: Visit,
     facts = page.locator(".facts").inner_text()
     assert "4 × 100 samples" in facts
     assert "noise level" in facts
+    here.draw_all()
     assert page.locator(".plot .main-svg").count() >= 4
     page.get_by_text("The numbers behind it").last.click()
     table = page.get_by_role("region", name="Amplitudes of the lines")

@@ -29,6 +29,20 @@ DRAW_MAP = """async ([address, rows, columns]) => {{
   }});
 }}"""
 
+DRAW_PLOTS = """async (address) => {
+  const { axis, linkAxes, plot } = await import(address);
+  const [near, far] = ["near", "far"].map((id) => {
+    const place = document.createElement("div");
+    place.id = id;
+    document.querySelector("main").append(place);
+    return place;
+  });
+  near.style.marginBottom = "5000px";
+  const draw = () => ({ data: [{ x: [0, 1, 2], y: [1, 0, 1] }], layout: { xaxis: axis("x") } });
+  const table = () => ({ columns: ["x", "y"], rows: [["0", "1"]] });
+  linkAxes([near, far].map((place) => plot(place, { draw, caption: "A curve.", table })));
+}"""
+
 
 def module(visit: Visit, name: str) -> str:
     return str(visit.page.evaluate(MODULE.format(name=name)))
@@ -113,6 +127,28 @@ def test_a_map_is_read_by_mouse_and_by_keyboard(visit: Visit) -> None:
         page.keyboard.press(key)
     assert page.evaluate("window.chosen[1]") == [3, 198]
     assert page.locator(".map-reading").inner_text() == "row 3, column 198"
+
+
+@pytest.mark.parametrize(
+    "come_to", ["document.querySelector('#far').scrollIntoView()", "dispatchEvent(new Event('beforeprint'))"]
+)
+def test_a_plot_is_drawn_when_it_is_come_to_and_has_its_table_before(visit: Visit, come_to: str) -> None:
+    page = visit.open("/jobs")
+    page.evaluate(DRAW_PLOTS, module(visit, "plots.js"))
+    page.locator("#near .main-svg").first.wait_for()
+    page.locator("#far summary").evaluate("(summary) => summary.click()")
+    assert page.locator("#far").get_by_role("row").count() == 2
+    assert page.locator("#far .main-svg").count() == 0
+    page.evaluate(come_to)
+    page.locator("#far .main-svg").first.wait_for()
+
+
+def test_zooming_a_plot_zooms_one_that_is_not_drawn_yet(visit: Visit) -> None:
+    page = visit.open("/jobs")
+    page.evaluate(DRAW_PLOTS, module(visit, "plots.js"))
+    page.locator("#near .main-svg").first.wait_for()
+    page.evaluate("Plotly.relayout(document.querySelector('#near .plot'), 'xaxis.range', [0, 0.5])")
+    page.wait_for_function("document.querySelector('#far .plot').layout?.xaxis.range[1] === 0.5")
 
 
 @pytest.mark.parametrize("path", ["/plants", "/jobs"])

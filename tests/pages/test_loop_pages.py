@@ -60,12 +60,15 @@ def test_a_cell_shows_what_was_measured_there(visit: Visit, known: Json) -> None
     page.locator("#cell figure").nth(2).wait_for()
     page.locator("#cell summary").first.click()
     page.locator("#cell table").first.get_by_role("row", name="measured").first.wait_for()
+    visit.draw_all()
     page.locator('#cell .plot[class*="js-plotly-plot"]').nth(2).wait_for()
 
 
 def test_axes_are_linked(visit: Visit, known: Json) -> None:
     page = visit.open(f"/plants/{known['plant']}/compare/{known['comparison']}")
     ranges = "[...document.querySelectorAll('#cell .js-plotly-plot')].slice(0, 2).map((one) => one.layout.xaxis.range)"
+    page.locator("#cell .plot").first.scroll_into_view_if_needed()
+    page.locator("#cell .js-plotly-plot").first.wait_for()
     page.evaluate("Plotly.relayout(document.querySelector('#cell .js-plotly-plot'), 'xaxis.range', [0, 0.5])")
     page.wait_for_function(f"({ranges}).every((range) => range[1] === 0.5)")
 

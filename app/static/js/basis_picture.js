@@ -27,7 +27,7 @@ export class BasisPicture {
     const turn = this.asked;
     try {
       const found = await post("/bases/values", request);
-      if (turn === this.asked) await draw(this.place, request.schedulingVariables, found);
+      if (turn === this.asked) draw(this.place, request.schedulingVariables, found);
     } catch (error) {
       if (!(error instanceof ApiProblem)) throw error;
       if (turn === this.asked) replace(this.place, h("p", { class: "hint" }, `No picture yet: ${error.detail}`));
@@ -35,10 +35,10 @@ export class BasisPicture {
   }
 }
 
-async function draw(place, variables, found) {
+function draw(place, variables, found) {
   const many = `${found.functions.length} functions: each coefficient has as many parameters, and needs as many operating points.`;
   replace(place, h("p", { class: "hint" }, many));
-  if (variables.length === 1) await drawCurves(place, variables[0], found);
+  if (variables.length === 1) drawCurves(place, variables[0], found);
   else drawMap(place, variables, found);
 }
 

@@ -2,43 +2,47 @@
 
 import { context } from "./context.js";
 import { h } from "./dom.js";
+import { begin, whenNear } from "./near_window.js";
 import { seriesColour } from "./palette.js";
 import { tableBehind } from "./tables.js";
 import { colour, onThemeChange } from "./theme.js";
 
 const SETTINGS = { responsive: true, displayModeBar: false, scrollZoom: false, doubleClick: "reset" };
-const drawn = new Map();
+const drawn = new Map(); // of each chart: draws it again
+const drawings = new WeakMap(); // of each chart: resolves when it has been drawn
 let loading = null;
 
-// Draw a plot into `place`. `draw` gives {data, layout} anew for every theme; `table` gives what `table()` takes.
-// Data are zoomed by dragging where there is a mouse; a double click shows all again. Resolves to the plotly element.
-export async function plot(place, { draw, caption, table = null, height = 340, label = caption }) {
+// A plot in `place`, drawn when it comes near the window. `draw` gives {data, layout} anew for every theme; `table` gives
+// what `table()` takes. Data are zoomed by dragging where there is a mouse; a double click shows all again. Gives the
+// element that plotly.js draws into.
+export function plot(place, { draw, caption, table = null, height = 340, label = caption }) {
   const chart = h("div", { class: "plot", role: "img", "aria-label": label, style: `height:${height}px` });
   place.append(h("figure", {}, chart, h("figcaption", {}, caption), table && tableBehind(table)));
-  const Plotly = await loadPlotly();
   const render = () => {
     const { data, layout } = draw();
-    return Plotly.react(chart, data, styled(layout, height, data), SETTINGS);
+    return globalThis.Plotly.react(chart, data, styled(layout, height, data), SETTINGS);
   };
-  await render();
-  drawn.set(chart, render);
+  drawings.set(chart, whenNear(chart, async () => {
+    await loadPlotly();
+    await render();
+    drawn.set(chart, render);
+  }));
   return chart;
 }
 
 // Zooming one of the charts zooms the others along the named axes, e.g. "xaxis".
 export function linkAxes(charts, names = ["xaxis"]) {
   let busy = false;
-  for (const chart of charts) {
-    chart.on("plotly_relayout", async (change) => {
-      if (busy) return;
-      const relevant = Object.entries(change).filter(([key]) => names.includes(key.split(".")[0]));
-      if (!relevant.length) return;
-      busy = true;
-      const others = charts.filter((other) => other !== chart);
-      await Promise.all(others.map((other) => globalThis.Plotly.relayout(other, Object.fromEntries(relevant))));
-      busy = false;
-    });
-  }
+  const follow = async (leader, change) => {
+    const relevant = Object.entries(change).filter(([key]) => names.includes(key.split(".")[0]));
+    if (busy || !relevant.length) return;
+    busy = true;
+    const others = charts.filter((chart) => chart !== leader);
+    await Promise.all(others.map(begin));
+    await Promise.all(others.map((other) => globalThis.Plotly.relayout(other, Object.fromEntries(relevant))));
+    busy = false;
+  };
+  for (const chart of charts) drawings.get(chart).then(() => chart.on("plotly_relayout", (change) => follow(chart, change)));
 }
 
 // An axis: logarithmic or linear, with a title.
@@ -64,7 +68,7 @@ export function thinned(x, y, most = 4000) {
 
 export function loadPlotly() {
   loading ??= new Promise((resolve, reject) => {
-    const script = h("script", { src: context.plotly, onload: () => resolve(globalThis.Plotly), onerror: reject });
+    const script = h("script", { src: context.plotly, onload: resolve, onerror: () => reject(new Error("plotly.js did not load")) });
     document.head.append(script);
   });
   return loading;

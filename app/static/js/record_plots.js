@@ -8,15 +8,14 @@ import { colour } from "./theme.js";
 const TABLE_ROWS = 500;
 
 // Input, output (and scheduling) over time, one plot each with a common time axis.
-export async function drawRecord(place, plant, inputs, outputs, sampleTime, period, scheduling = []) {
+export function drawRecord(place, plant, inputs, outputs, sampleTime, period, scheduling = []) {
   const groups = [
     ...named(inputs, plant.inputs ?? [plant.input]), ...named(outputs, plant.outputs ?? [plant.output]), ...named(scheduling, plant.schedulingVariables),
   ];
-  const charts = [];
-  for (const { values, signal } of groups) {
+  linkAxes(groups.map(({ values, signal }) => {
     const time = values.map((_, index) => index * sampleTime);
     const { x, y } = thinned(time, values);
-    charts.push(await plot(place, {
+    return plot(place, {
       caption: `${signal.name} over time${period ? `; a period lasts ${quantity(period * sampleTime, "s")}` : ""}.`,
       height: 230,
       draw: () => ({
@@ -24,9 +23,8 @@ export async function drawRecord(place, plant, inputs, outputs, sampleTime, peri
         layout: { xaxis: axis("time (s)"), yaxis: axis(labelled(signal.name, signal.unit)), shapes: boundaries(period, sampleTime, values.length) },
       }),
       table: () => ({ columns: ["time (s)", labelled(signal.name, signal.unit)], rows: values.slice(0, TABLE_ROWS + 1).map((value, i) => [significant(time[i], 5), significant(value, 5)]) }),
-    }));
-  }
-  linkAxes(charts);
+    });
+  }));
 }
 
 const named = (channels, signals) => channels.map((values, index) => ({ values, signal: signals[index] ?? { name: `channel ${index + 1}`, unit: "" } }));
@@ -42,7 +40,7 @@ function boundaries(period, sampleTime, samples) {
 }
 
 // Amplitudes of input and output over frequency.
-export async function drawSpectrum(place, plant, spectrum) {
+export function drawSpectrum(place, plant, spectrum) {
   const frequencies = spectrum.frequenciesRadPerSecond.map(hertz);
   const first = frequencies.find((one) => one > 0);
   const log = frequencies.length > 1 && frequencies.at(-1) / first > 30;
@@ -50,12 +48,12 @@ export async function drawSpectrum(place, plant, spectrum) {
   const excited = (values) => pick(frequencies, values, spectrum.excited);
   const others = (values) => pick(frequencies, values, spectrum.excited.map((one) => !one));
   const mean = spectrum.periods > 1 ? ` of the mean over ${spectrum.periods} periods` : "";
-  const input = await plot(place, {
+  const input = plot(place, {
     caption: `Spectrum of the ${plant.input.name}: amplitude of each line${mean}. Excited lines are filled.`, height: 260,
     draw: () => ({ data: [lines(excited(spectrum.input), "excited", 1, true), lines(others(spectrum.input), "not excited", 6, false)], layout: { xaxis: title, yaxis: amplitude(plant.input) } }),
     table: () => numbers(plant, frequencies, spectrum),
   });
-  const output = await plot(place, {
+  const output = plot(place, {
     caption: spectrum.noise
       ? `Spectrum of the ${plant.output.name}${mean}, with the standard deviation of the noise in it.`
       : `Spectrum of the ${plant.output.name}. The noise is not known: it takes two periods or more to see it.`,

@@ -5,7 +5,7 @@ import { axis, linkAxes, plot } from "./plots.js";
 import { faded, seriesColour, symbol } from "./palette.js";
 
 // Gain and phase of a measured response, of every channel where there are several.
-export async function drawResponse(place, plant, data) {
+export function drawResponse(place, plant, data) {
   const frequencies = data.frequenciesRadPerSecond.map(hertz);
   const curves = channels(data, plant).map((one) => ({ ...one, gain: gains(one), phase: unwrapped(one) }));
   const log = frequencies.some((one) => one > 0) && Math.max(...frequencies) / Math.min(...frequencies.filter((one) => one > 0)) > 20;
@@ -16,11 +16,11 @@ export async function drawResponse(place, plant, data) {
   const table = () => ({ columns: ["frequency (Hz)", ...curves.flatMap((one) => [`gain ${one.name}`, `phase (°) ${one.name}`])],
     rows: frequencies.map((value, i) => [significant(value, 4), ...curves.flatMap((one) => [significant(one.gain[i], 4), significant(one.phase[i], 4)])]) });
   const unit = plant.input ? [plant.output.unit, plant.input.unit].filter(Boolean).join("/") : "";
-  const gain = await plot(place, {
+  const gain = plot(place, {
     caption: `Gain${data.variance ? " with one standard deviation" : ""}.`, height: 300, table,
     draw: () => ({ data: traces((one) => one.gain, (one) => one.deviation, (gain) => gain / 100), layout: { xaxis: axis("frequency (Hz)", { log }), yaxis: axis(labelled("gain", unit), { log: true }), showlegend: curves.length > 1 } }),
   });
-  const phase = await plot(place, {
+  const phase = plot(place, {
     caption: "Phase.", height: 260, table,
     draw: () => ({ data: traces((one) => one.phase, (one) => one.deviation?.map((value, i) => (180 / Math.PI) * Math.min(value / one.gain[i], 1)), () => -Infinity), layout: { xaxis: axis("frequency (Hz)", { log }), yaxis: axis("phase (°)"), showlegend: false } }),
   });

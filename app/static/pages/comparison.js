@@ -14,7 +14,6 @@ import { runJob } from "../js/jobs.js";
 import { experimentTitle, pointText } from "../js/models/experiments.js";
 import { indexed, titleOf } from "../js/models/versions.js";
 import { moment, significant } from "../js/numbers.js";
-import { loadPlotly } from "../js/plots.js";
 import { showProblem } from "../js/problems.js";
 import { page } from "../js/ready.js";
 import { plant } from "../js/shell.js";
@@ -22,7 +21,6 @@ import { table } from "../js/tables.js";
 
 const at = (rest) => `/plants/${context.plantId}/${rest}`;
 
-loadPlotly(); // while the data come
 page(async () => {
   const compared = get(`/comparisons/${context.comparisonId}`);
   const [found, comparison, model, { rows, timeRows }, experiments] = await Promise.all([
@@ -36,11 +34,10 @@ page(async () => {
   if (worst) maps.choose(worst);
   drawTests(comparison, titles, found);
   drawExperiments(comparison, titles, found.schedulingVariables);
-  const distribution = h("div", {});
-  const misfit = misfitPlots(byId("misfit"), comparison.parts, found.schedulingVariables);
-  byId("misfit").append(distribution);
-  const alongTime = timeRows.map((row) => timeResidualPlot(byId("misfit"), row, titles.get(row.experimentId) ?? "experiment"));
-  await Promise.all([misfit, ...alongTime, rows.length ? distributionPlot(distribution, maps.parts) : null, view.drawn]);
+  misfitPlots(byId("misfit"), comparison.parts, found.schedulingVariables);
+  if (rows.length) distributionPlot(byId("misfit"), maps.parts);
+  for (const row of timeRows) timeResidualPlot(byId("misfit"), row, titles.get(row.experimentId) ?? "experiment");
+  await view.drawn;
 });
 
 function drawVerdict(comparison, model) {

@@ -23,14 +23,13 @@ page(async () => {
   replace(byId("summary"), summary(described, design, model));
   if (design.totalEnergy === null) return;
   append(byId("where"), [h("h2", {}, "Operating points and spectra")]);
-  await drawEnergies(byId("where"), described, design);
-  await drawSpectra(byId("where"), described, design);
+  drawEnergies(byId("where"), described, design);
+  drawSpectra(byId("where"), described, design);
   drawDecisions(byId("accuracy"), design);
   append(byId("accuracy"), [h("h2", {}, "Accuracy")]);
-  await drawAccuracy(byId("accuracy"), design, model);
+  drawAccuracy(byId("accuracy"), design, model);
   append(byId("accuracy"), [bindingTable(design, described)]);
-  await drawTrade(byId("trade"), described, design);
-  await drawSignals(byId("signals"), described, design);
+  await Promise.all([drawTrade(byId("trade"), described, design), drawSignals(byId("signals"), described, design)]);
 });
 
 function summary(described, design, model) {

@@ -20,10 +20,10 @@ page(async () => {
   const place = byId("plots");
   if (experiment.kind === "timeRecord") {
     const [data, spectrum] = await Promise.all([get(`${path}/data`), get(`${path}/spectrum`)]);
-    await drawRecord(place, described, [data.input], [data.output], data.sampleTimeSeconds, experiment.understood.periodSamples);
-    await drawSpectrum(place, described, spectrum);
+    drawRecord(place, described, [data.input], [data.output], data.sampleTimeSeconds, experiment.understood.periodSamples);
+    drawSpectrum(place, described, spectrum);
   } else {
-    await drawOther(place, described, await get(`${path}/data`));
+    drawOther(place, described, await get(`${path}/data`));
   }
 });
 

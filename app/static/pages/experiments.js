@@ -67,7 +67,7 @@ async function refresh() {
   const local = found.filter((one) => one.operatingPoint);
   replace(byId("where"));
   const kinds = [["records", "timeRecord"], ["frequency responses", "frequencyResponse"], ["responses of several channels", "matrixFrequencyResponse"]];
-  await operatingPoints(byId("where"), described.schedulingVariables,
+  operatingPoints(byId("where"), described.schedulingVariables,
     kinds.map(([name, kind]) => ({ name, points: local.filter((one) => one.kind === kind).map((one) => one.operatingPoint) })),
     "Where was measured.");
 }

@@ -28,7 +28,7 @@ page(async () => {
   replace(byId("parameters"), parameterTable([["estimate ± standard deviation", model]], found));
   replace(byId("provenance"), provenance(model, { plant: found, models: indexed(models), experiments: indexed(experiments) }));
   drawTests(model);
-  await drawPoles(model, found);
+  drawPoles(model, found);
   await drawResponse(model, found, experiments);
 });
 
@@ -49,7 +49,7 @@ function drawTests({ tests }) {
   return replace(byId("tests"), table({ caption: "A small p-value speaks against the model", columns: ["test", "statistic", "degrees of freedom", "p-value"], rows }));
 }
 
-async function drawPoles(model, found) {
+function drawPoles(model, found) {
   const place = byId("poles");
   replace(place);
   if (!model.poles.some((one) => one.poles.re.length)) {

@@ -38,10 +38,9 @@ export class CellView {
       const height = this.place.offsetHeight;
       if (height) this.place.style.minHeight = `${height}px`; // so that the page does not jump
       replace(this.place, h("h2", {}, `At ${significant(hertz(frequency), 4)} Hz`), h("div", { class: "columns" }, columns), this.#leftOut(found), record);
-      const recorded = experiment ? recordPlot(record, experiment, this.plant) : null;
-      const charts = await Promise.all(found.map((one, i) => this.#bode(columns[i], one, frequency)));
+      const charts = found.map((one, i) => this.#bode(columns[i], one, frequency));
       if (charts.length > 1) linkAxes(charts, ["xaxis", "yaxis", "yaxis2"]);
-      await recorded;
+      if (experiment) await recordPlot(record, experiment, this.plant);
       this.place.style.minHeight = "";
     } catch (problem) {
       if (!problem.title) throw problem;

@@ -1,6 +1,5 @@
 // Lack of fit against what noise alone would give: overall, per operating point, per band, per class of lines.
 
-import { h } from "../dom.js";
 import { logAxis } from "../log_axis.js";
 import { estimate, hertz, labelled, pointLabel, probability, significant } from "../numbers.js";
 import { faded, seriesColour, symbol } from "../palette.js";
@@ -18,7 +17,7 @@ export function ratio(test) {
 }
 
 // The plots of all places that there are tests of.
-export async function misfitPlots(place, parts, variables) {
+export function misfitPlots(place, parts, variables) {
   const bandLabel = (band) => (band.maximumRadPerSecond === null ? `above ${significant(hertz(band.minimumRadPerSecond), 2)}`
     : `${significant(hertz(band.minimumRadPerSecond), 2)} to ${significant(hertz(band.maximumRadPerSecond), 2)}`);
   const points = [...new Map(parts.flatMap((part) => part.byPoint).map((one) => [JSON.stringify(one.operatingPoint), one.operatingPoint])).values()];
@@ -30,10 +29,9 @@ export async function misfitPlots(place, parts, variables) {
     ["each band of frequencies", "frequency (Hz)", (part) => part.byBand.map((one) => [bandLabel(one), one.test])],
     ["each class of lines", "", (part) => part.byLineClass.map((one) => [one.name, one])],
   ];
-  const drawn = charts.filter(([, , testsOf]) => parts.some((part) => testsOf(part).length));
-  const holders = drawn.map(() => h("div", {}));
-  place.append(...holders);
-  await Promise.all(drawn.map(([where, title, testsOf, order], i) => misfitPlot(holders[i], parts, { where, title, testsOf, order })));
+  for (const [where, title, testsOf, order] of charts) {
+    if (parts.some((part) => testsOf(part).length)) misfitPlot(place, parts, { where, title, testsOf, order });
+  }
 }
 
 function misfitPlot(place, parts, { where, title, testsOf, order }) {

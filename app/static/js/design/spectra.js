@@ -35,17 +35,17 @@ export function drawEnergies(place, plant, design) {
 }
 
 // A map over operating point and frequency where there are many, curves of single points beside it.
-export async function drawSpectra(place, plant, design) {
+export function drawSpectra(place, plant, design) {
   const { experiments } = design;
   if (!experiments.length) return;
   const inner = h("div", {});
-  const show = async (indices) => {
+  const show = (indices) => {
     replace(inner);
-    await drawCurves(inner, plant, indices.map((index) => experiments[index]));
+    drawCurves(inner, plant, indices.map((index) => experiments[index]));
   };
   if (experiments.length > MOST_CURVES) drawMap(place, plant, experiments, (row) => show([row]));
   place.append(inner);
-  await show(experiments.slice(0, MOST_CURVES).map((_, index) => index));
+  show(experiments.slice(0, MOST_CURVES).map((_, index) => index));
 }
 
 function drawMap(place, plant, experiments, onChoose) {

@@ -19,7 +19,7 @@ export async function drawTrade(place, plant, design) {
   const all = await list("/designs", { plantId: plant.id }, 500);
   const trials = all.filter((one) => NAME.exec(one.request.name)?.[2] === design.id);
   replace(place, h("h2", {}, "Energy against accuracy"), h("p", {}, "What it would cost to know the plant better, or how much could be saved by knowing it less well: the same request with all deviations multiplied by a factor."));
-  if (trials.length) await drawCurve(place, plant, design, trials);
+  if (trials.length) drawCurve(place, plant, design, trials);
   else if (scaled(design.request.targets, 1)) place.append(h("p", { class: "actions" }, submitButton("Compute the trade", () => compute(place, plant, design), { class: "quiet" })));
   else place.append(h("p", { class: "hint" }, "These targets have no common scale."));
 }

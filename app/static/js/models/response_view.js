@@ -26,7 +26,7 @@ export class ResponseView {
       const responses = await Promise.all(models.map(([, model]) => responseOf(model, point, bandOf(model, this.experiments))));
       const columns = models.map(([title]) => h("div", {}, models.length > 1 ? h("h3", {}, title) : null));
       replace(this.inner, h("div", { class: models.length > 1 ? "columns" : "" }, columns), leftOut(responses));
-      const charts = await Promise.all(responses.map((one, i) => this.#draw(columns[i], one)));
+      const charts = responses.map((one, i) => this.#draw(columns[i], one));
       if (charts.length > 1) linkAxes(charts, ["xaxis", "yaxis", "yaxis2"]);
     } catch (problem) {
       if (!problem.title) throw problem;
