@@ -98,7 +98,7 @@ def designed(api: Api) -> tuple[Json, Json]:
     model = api.post("/models/stated", {"plantId": plant["id"], "theta": paper.THETA, "noiseVariance": 0.5})
     body = {**paper.FIGURES[0].body(plant, model), "samples": 500, "operatingPoints": paper.only(0.0, 1.5, 8.0)}
     design = api.made("/designs", body)
-    return model, api.made(f"/designs/{design['id']}/signals", {"periods": 5, "samples": 40})
+    return model, api.made(f"/designs/{design['id']}/signals", {"method": "filtered_noise", "samples": 40})
 
 
 def test_designed_signals_are_played_where_they_were_designed_for_or_elsewhere(
