@@ -34,6 +34,7 @@ class Job(CamelModel):
     created_at: Timestamp
     started_at: Timestamp | None = None
     finished_at: Timestamp | None = None
+    plant_id: str | None = Field(default=None, description="the plant it belongs to; null where it makes one")
     attempts: Integer = Field(description="how often it was started; more than once when a server died")
     result: JobResult | None = Field(default=None, description="what it made, once it has succeeded")
     problem: Problem | None = Field(default=None, description="why it failed, if it has")
@@ -50,6 +51,7 @@ class Job(CamelModel):
             created_at=record.created_at,
             started_at=record.started_at,
             finished_at=record.finished_at,
+            plant_id=record.plant_id,
             attempts=record.attempts,
             result=JobResult.model_validate(result) if result else None,
             problem=Problem.model_validate(record.problem) if record.problem else None,

@@ -110,9 +110,26 @@ def test_a_job_is_seen_live_and_can_be_cancelled(visit: Visit, server: Server) -
     card = page.locator(f'[data-job="{job["id"]}"]')
     card.get_by_role("progressbar").wait_for()
     assert "Designing experiments" in card.inner_text()
+    assert card.get_by_role("link", name=plant["name"]).get_attribute("href") == f"/plants/{plant['id']}"
     card.get_by_role("button", name="Cancel").click()
     page.get_by_role("cell", name="cancelled").wait_for()
     assert api.get(f"/jobs/{job['id']}")["state"] == "cancelled"
+    assert page.get_by_role("row").nth(1).get_by_role("link").inner_text() == plant["name"]
+
+
+def test_an_ended_job_leads_to_what_it_made_and_to_its_plant(visit: Visit, server: Server) -> None:
+    api = Api(server.url)
+    plant, model = prepared(api)
+    design = api.made("/designs", FIGURES[7].body(plant, model))
+    page = visit.open("/jobs")
+    row = page.get_by_role("row").nth(1)
+    made = row.get_by_role("link", name="the design").get_attribute("href")
+    assert made == f"/plants/{plant['id']}/design/{design['id']}"
+    assert row.get_by_role("link", name=plant["name"]).get_attribute("href") == f"/plants/{plant['id']}"
+    api.made(f"/designs/{design['id']}/signals", {"periods": 2})
+    visit.open("/jobs").get_by_role("button", name="the signals").click()
+    page.wait_for_url(f"**/plants/{plant['id']}/design/{design['id']}")
+    visit.wait()
 
 
 def test_a_map_is_read_by_mouse_and_by_keyboard(visit: Visit) -> None:

@@ -1,8 +1,10 @@
-// All jobs, live: those that go on are watched, and new ones are looked for.
+// All jobs, live: those that go on are watched, and new ones are looked for. Each leads to its plant and its result.
 
 import { list, pause } from "../js/api.js";
 import { byId, h, message, replace } from "../js/dom.js";
+import { plantLink, resultLink } from "../js/job_links.js";
 import { isFinal, jobCard, kindOf, stateOf } from "../js/jobs.js";
+import { indexed } from "../js/models/versions.js";
 import { moment } from "../js/numbers.js";
 import { page } from "../js/ready.js";
 import { table } from "../js/tables.js";
@@ -24,12 +26,13 @@ async function goOn() {
 }
 
 async function look() {
-  const jobs = await list("/jobs", {}, 200);
-  drawRunning(jobs.filter((job) => !isFinal(job)));
-  drawEnded(jobs.filter(isFinal));
+  const [jobs, found] = await Promise.all([list("/jobs", {}, 200), list("/plants")]);
+  const plants = indexed(found);
+  drawRunning(jobs.filter((job) => !isFinal(job)), plants);
+  drawEnded(jobs.filter(isFinal), plants);
 }
 
-function drawRunning(jobs) {
+function drawRunning(jobs, plants) {
   const place = byId("running");
   for (const [id, card] of watched) {
     if (jobs.some((job) => job.id === id)) continue;
@@ -39,7 +42,7 @@ function drawRunning(jobs) {
   }
   const waiting = jobs.filter((job) => !watched.has(job.id)).reverse();
   for (const job of waiting.slice(0, Math.max(MOST_WATCHED - watched.size, 0))) {
-    const card = jobCard(job);
+    const card = jobCard(job, { link: (one) => plantLink(one, plants) });
     watched.set(job.id, card);
     card.ended.then(look, () => {});
   }
@@ -49,11 +52,12 @@ function drawRunning(jobs) {
     jobs.length ? null : message("", "Nothing is running."));
 }
 
-function drawEnded(jobs) {
+function drawEnded(jobs, plants) {
   const place = byId("ended");
   if (!jobs.length) return replace(place, h("p", { class: "hint" }, "No job has ended yet."));
-  const rows = jobs.map((job) => [kindOf(job), stateOf(job), moment(job.finishedAt), job.problem?.detail ?? ""]);
-  if (place.dataset.rows === JSON.stringify(rows)) return null;
-  place.dataset.rows = JSON.stringify(rows);
-  return replace(place, table({ columns: ["job", "how it ended", "when", "what went wrong"], rows, textColumns: 4 }));
+  const shown = JSON.stringify(jobs.map((job) => [job.id, plants.get(job.plantId)?.name]));
+  if (place.dataset.shown === shown) return null;
+  place.dataset.shown = shown;
+  const rows = jobs.map((job) => [kindOf(job), plantLink(job, plants) ?? "–", stateOf(job), moment(job.finishedAt), resultLink(job) ?? job.problem?.detail ?? "–"]);
+  return replace(place, table({ columns: ["job", "plant", "how it ended", "when", "what came of it"], rows, textColumns: 5 }));
 }
