@@ -33,11 +33,11 @@ def serve() -> None:
 
 
 @application.command()
-def design(file: RequestFile, output: Output = None) -> None:
+def design(file: RequestFile, output: Output = None, report: Report = None) -> None:
     """Design experiments without a server; FILE has plant, model, design and, if wanted, signals."""
     from app.offline.commands import design as run
 
-    run(file, output or file.with_name(f"{file.stem}-designed"))
+    run(file, output or file.with_name(f"{file.stem}-designed"), report)
 
 
 @application.command()

@@ -1,7 +1,7 @@
 """The commands `identify` and `design`."""
 
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from app.conversion.plants import is_state_space
 from app.offline import results
@@ -18,6 +18,14 @@ from app.schemas.plants import Plant
 from app.schemas.signals import Signals, SignalsRequest
 from app.schemas.state_space import StateSpaceModelRequest
 from app.services import designs, models, signals, state_space_models
+
+if TYPE_CHECKING:
+    from app.report.chain.documents import Played
+
+DESIGNED = (
+    "Where to measure and with which signals, so that the accuracy asked for is reached with the least input energy;"
+    " and the model that this was computed from."
+)
 
 
 @explained
@@ -42,7 +50,7 @@ def identify(file: Path, output: Path, report: Path | None = None) -> None:
 
 
 @explained
-def design(file: Path, output: Path) -> None:
+def design(file: Path, output: Path, report: Path | None = None) -> None:
     """Design the experiments of a request file, and make their signals when it asks for them."""
     content = load(file)
     plant = plant_in(content)
@@ -53,8 +61,12 @@ def design(file: Path, output: Path) -> None:
         found = place.run("design", designs.payload(plant, model, request))
         made = Design.model_validate(stored(found.document, DESIGN_ID, plantId=PLANT_ID, jobId=None))
         results.write_design(output, made)
+        played: tuple[Played, ...] = ()
         if "signals" in content:
-            _signals(place, made, checked(SignalsRequest, content["signals"] or {}, "/signals"), output)
+            played = (_signals(place, made, checked(SignalsRequest, content["signals"] or {}, "/signals"), output),)
+        if report is not None:
+            chain = Loop(place, plant, ()).chain([model], [], [], (made,), played)
+            results.write_report(report, chain, f"{plant.name}: the designed experiments", DESIGNED)
 
 
 def _identification(
@@ -66,7 +78,11 @@ def _identification(
     return "identification", models.payload(plant, request, experiments)
 
 
-def _signals(place: Workplace, design: Design, request: SignalsRequest, output: Path) -> None:
+def _signals(place: Workplace, design: Design, request: SignalsRequest, output: Path) -> "Played":
+    from app.report.chain.documents import Played
+
     found = place.run("signals", signals.payload(design, request))
     document = stored(found.document, "signals", plantId=PLANT_ID, jobId=None)
-    results.write_signals(output, Signals.model_validate(document), place.arrays.get(found.arrays or ""))
+    played = Played(Signals.model_validate(document), place.arrays.get(found.arrays or ""))
+    results.write_signals(output, played.document, played.arrays)
+    return played

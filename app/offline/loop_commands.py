@@ -1,5 +1,7 @@
 """The commands `compare`, `diagnose` and `extend`."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -16,11 +18,7 @@ from app.schemas.models import Model
 @explained
 def compare(file: Path, output: Path, report: Path | None) -> None:
     """Hold the model of a request file against its experiments."""
-    content = load(file)
-    plant = plant_in(content)
-    model = model_in(content, plant, file.parent)
-    with workplace() as place:
-        loop = loop_of(place, plant, section(content, "experiments"), file.parent)
+    with _begun(file) as (content, model, loop):
         compared = loop.compare(model, content.get("compare"))
         results.write_comparison(output, compared)
         if report is not None:
@@ -30,11 +28,7 @@ def compare(file: Path, output: Path, report: Path | None) -> None:
 @explained
 def diagnose(file: Path, output: Path, add: bool, report: Path | None) -> None:
     """Look for what the model of a request file lacks; with `add`, add the best effect and refit."""
-    content = load(file)
-    plant = plant_in(content)
-    model = model_in(content, plant, file.parent)
-    with workplace() as place:
-        loop = loop_of(place, plant, section(content, "experiments"), file.parent)
+    with _begun(file) as (content, model, loop):
         found = loop.diagnose(model, content.get("diagnose"))
         results.write_diagnosis(output, found)
         versions = [model]
@@ -48,15 +42,21 @@ def diagnose(file: Path, output: Path, add: bool, report: Path | None) -> None:
 @explained
 def extend(file: Path, output: Path, report: Path | None) -> None:
     """Add the effect that a request file names to its model, and refit."""
-    content = load(file)
-    plant = plant_in(content)
-    model = model_in(content, plant, file.parent)
-    with workplace() as place:
-        loop = loop_of(place, plant, section(content, "experiments"), file.parent)
+    with _begun(file) as (content, model, loop):
         grown = loop.extend(model, section(content, "extend"))
         results.write_model(output, grown, [])
         if report is not None:
             _report(report, loop, [model, grown], [], content)
+
+
+@contextmanager
+def _begun(file: Path) -> Iterator[tuple[dict[str, Any], Model, Loop]]:
+    """What a request file holds, its model, and its experiments in a workplace."""
+    content = load(file)
+    plant = plant_in(content)
+    model = model_in(content, plant, file.parent)
+    with workplace() as place:
+        yield content, model, loop_of(place, plant, section(content, "experiments"), file.parent)
 
 
 def _as_diagnosed(found: Diagnosis) -> dict[str, Any]:

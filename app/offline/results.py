@@ -132,12 +132,12 @@ def write_diagnosis(folder: Path, found: Diagnosis) -> None:
     _say(folder, table)
 
 
-def write_report(path: Path, chain: "Chain") -> None:
-    """The report of the whole chain as one HTML file."""
+def write_report(path: Path, chain: "Chain", title: str = "", introduction: str = "") -> None:
+    """The report of the whole chain as one HTML file; title and introduction are those of its model unless given."""
     from app.report.chain.build import chain_report
     from app.report.page import write
 
-    write(chain_report(chain), path)
+    write(chain_report(chain, title, introduction), path)
     Console().print(f"report in {path}")
 
 

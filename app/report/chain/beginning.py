@@ -5,6 +5,7 @@ from app.conversion.plants import plant_dependence
 from app.conversion.spectra import spectrum_object
 from app.report.axes import labelled
 from app.report.chain.documents import Chain
+from app.report.chain.expected import expected_blocks
 from app.report.document import Plot, Section, Table
 from app.report.figures.energies import energy_per_point
 from app.report.figures.signals import signal_table, signals
@@ -68,6 +69,7 @@ def design_section(chain: Chain, design: Design) -> Section:
         offered = candidate_points(design.request, plant_dependence(chain.plant))
         blocks.append(energy_per_point(made, offered, chain.axes))
         blocks.append(spectra(made, design.samples, design.sample_time_seconds, chain.axes))
+        blocks += expected_blocks(chain, design)
     for played in chain.signals:
         if played.document.design_id == design.id:
             points = [tuple(one.operating_point) for one in played.document.signals]
@@ -78,6 +80,7 @@ def design_section(chain: Chain, design: Design) -> Section:
     text = (
         "The operating points and input spectra of least energy that give the accuracy asked for, and a bound below"
         " which no design of this kind can fall.",
+        *([design.outcome.advice] if design.outcome.advice else []),
     )
     return Section("The designed experiments", text, tuple(blocks))
 

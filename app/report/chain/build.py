@@ -65,5 +65,7 @@ def _facts(chain: Chain) -> list[Fact]:
             unit = chain.axes.energy_unit
             facts.append(Fact(f"{significant(design.total_energy, 4)} {unit}".strip(), "input energy of the design"))
             facts.append(Fact(significant(design.gap, 1), "certified gap to the least energy"))
-    facts.append(Fact(str(len(chain.experiments)), "experiments"))
+            facts.append(Fact(str(len(design.experiments)), "operating points designed"))
+    if chain.experiments:
+        facts.append(Fact(str(len(chain.experiments)), "experiments"))
     return facts

@@ -1,7 +1,10 @@
 """Commands without a server: request files in, results out, the same as over HTTP."""
 
+import html
 import json
+import re
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,6 +13,7 @@ from typer.testing import CliRunner
 
 from app.cli import application
 from app.files import csv_file
+from app.report.numbers import significant
 from tests.support import responses
 from tests.support.paper import DEVIATIONS, GRID, NOISE_VARIANCE, PLANT, THETA, fir, played
 
@@ -40,7 +44,7 @@ def test_design_finds_what_the_paper_has(tmp_path: Path, designing: dict[str, ob
     file = tmp_path / "request.yaml"
     designing["signals"] = {"samples": 100, "periods": 10}
     file.write_text(yaml.safe_dump(designing))
-    code, output = run("design", file)
+    code, output = run("design", file, "--report", str(tmp_path / "report.html"))
     assert code == 0, output
     design = json.loads((tmp_path / "results" / "design.json").read_text())
     assert design["totalEnergy"] == pytest.approx(3510.4, rel=1e-3)
@@ -49,6 +53,25 @@ def test_design_finds_what_the_paper_has(tmp_path: Path, designing: dict[str, ob
         samples = csv_file.read((tmp_path / "results" / f"signal-{signal['index']}.csv").read_bytes())
         assert np.sum(samples["input"] ** 2) == pytest.approx(signal["energy"])
     assert "3510" in output
+    report = (tmp_path / "report.html").read_text()
+    for shown in ("Input energy at each", "Spectrum of the input", "no design can need less than", "One period of the"):
+        assert shown in report
+    expected = design["expectedStandardDeviations"]
+    for name, asked, after in zip(design["parameterNames"], DEVIATIONS, expected, strict=True):
+        numbers = rf"{re.escape(name)}</th>\s*<td>{significant(asked)}</td>\s*<td>{significant(after)}</td>"
+        assert re.search(numbers, report), name
+
+
+def test_the_report_of_what_cannot_be_says_what_stands_in_the_way(tmp_path: Path, designing: dict[str, Any]) -> None:
+    designing["design"]["energyCaps"] = {"default": 1e-3}
+    file = tmp_path / "request.yaml"
+    file.write_text(yaml.safe_dump(designing))
+    code, output = run("design", file, "--report", str(tmp_path / "report.html"))
+    assert code == 0, output
+    outcome = json.loads((tmp_path / "results" / "design.json").read_text())["outcome"]
+    report = (tmp_path / "report.html").read_text()
+    assert outcome["advice"] in html.unescape(report)
+    assert "Standard deviation of each parameter" not in report
 
 
 def test_identify_reads_files_and_design_takes_its_model(tmp_path: Path, designing: dict[str, object]) -> None:
