@@ -14,7 +14,7 @@ DRAW_ALL = """async () => {
   for (const plot of document.querySelectorAll(".plot")) {
     if (!plot.checkVisibility()) continue;
     plot.scrollIntoView({ block: "nearest" });
-    while (plot.dataset.waits !== undefined) await new Promise((resolve) => setTimeout(resolve, 5));
+    while (plot.isConnected && plot.dataset.waits !== undefined) await new Promise((resolve) => setTimeout(resolve, 5));
   }
 }"""
 WIDTHS = (390, 1280)
