@@ -1,12 +1,15 @@
 """What was measured at one operating point: a time record or a frequency response."""
 
 from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
 
 from identification.arrays import ComplexArray, FloatArray, IntArray, finite_complex, finite_floats, require_positive
+from identification.channels import UNSTATED, Channels
 from identification.errors import MisuseError, RangeError, ShapeError
 
+Hold = Literal["zero", "first", "band"]
 OperatingPoint = tuple[float, ...]
 
 
@@ -15,8 +18,12 @@ class TimeRecord:
     """Input and output of one local experiment, u(t) and y(t), t = 0 … N−1, at a constant operating point.
 
     `input`, `output`: (N,), in the units of the plant; `sample_time` in seconds; `operating_point`: one value per
-    scheduling variable; `period`: samples per period when the input repeats itself, None otherwise.
-    Raises ShapeError for unequal lengths and RangeError for values that are not finite or a sample time ≤ 0.
+    scheduling variable; `period`: samples per period when the input repeats itself, None otherwise. `hold`: how the
+    input runs between its samples: zero-order hold, first-order hold (straight lines) or band limited; None when that
+    is not known. `feedback`: whether a controller acted on the output while it was recorded; `reference` (N,) the
+    signal that this loop was excited with, where it was recorded.
+    Raises ShapeError for unequal lengths, RangeError for values that are not finite or a sample time ≤ 0, and
+    MisuseError for a reference without feedback.
     """
 
     input: FloatArray
@@ -24,6 +31,10 @@ class TimeRecord:
     sample_time: float
     operating_point: OperatingPoint
     period: int | None = None
+    channels: Channels = UNSTATED
+    hold: Hold | None = None
+    feedback: bool = False
+    reference: FloatArray | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "input", finite_floats(self.input, "input"))
@@ -34,6 +45,18 @@ class TimeRecord:
                 "output",
             )
         require_sampling(len(self), self.sample_time, self.period)
+        if self.reference is not None:
+            self._check_reference(finite_floats(self.reference, "reference"))
+
+    def _check_reference(self, reference: FloatArray) -> None:
+        if not self.feedback:
+            raise MisuseError("a reference was given, but no feedback; say feedback=True or leave it out", "reference")
+        if reference.shape != self.output.shape:
+            raise ShapeError(
+                f"the reference has shape {reference.shape} and output {self.output.shape}; give one value per sample",
+                "reference",
+            )
+        object.__setattr__(self, "reference", reference)
 
     def __len__(self) -> int:
         return len(self.input)
@@ -75,6 +98,7 @@ class FrequencyResponse:
     variance: FloatArray | None = None
     variance_degrees_of_freedom: float | None = None
     covariance: ComplexArray | None = None
+    channels: Channels = UNSTATED
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "frequencies", finite_floats(self.frequencies, "frequencies"))
