@@ -37,11 +37,12 @@ def transition_matrix(shifted_from: FloatArray, shifted_to: FloatArray, method: 
 
 
 def projected(a: FloatArray, margin: float = MARGIN) -> FloatArray:
-    """A with every unstable eigenvalue moved inside the unit circle [Akcay2008, Guaranteeing stability].
+    """A with every eigenvalue moved inside the unit circle that is not there by the margin [Akcay2008].
 
-        λ ← λ min(2/|λ| − 1, (1 − margin)/|λ|) for 1 ≤ |λ| ≤ 2,   λ ← 0 for |λ| > 2
+        λ ← λ min(2/|λ| − 1, (1 − margin)/|λ|) for 1 − margin < |λ| ≤ 2,   λ ← 0 for |λ| > 2
 
-    In the real Schur form, whose diagonal blocks are scaled, so that A stays real; a stable A stays as it is.
+    (Guaranteeing stability, there for 1 ≤ |λ|; rounding decides on which side of the circle an eigenvalue on it comes
+    out.) In the real Schur form, whose diagonal blocks are scaled, so that A stays real; others stay as they are.
     """
     triangle, basis = schur(a, output="real")
     i, moved = 0, False
@@ -49,7 +50,7 @@ def projected(a: FloatArray, margin: float = MARGIN) -> FloatArray:
         size = 2 if i + 1 < len(a) and triangle[i + 1, i] != 0 else 1
         block = slice(i, i + size)
         modulus = float(abs(np.linalg.eigvals(triangle[block, block])).max())
-        if modulus >= 1:
+        if modulus > 1 - margin:
             triangle[block, block] *= max(min(2 - modulus, 1 - margin), 0.0) / modulus
             moved = True
         i += size

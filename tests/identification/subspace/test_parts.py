@@ -74,15 +74,16 @@ def test_total_least_squares_against_its_definition():
     assert np.allclose(transition_matrix(one, one @ a, "total_least_squares"), a)
 
 
-def test_projection_moves_unstable_eigenvalues_only():
+@pytest.mark.parametrize("on_the_circle", [1 - 1e-15, 1.0, 1 + 1e-15])
+def test_projection_moves_eigenvalues_that_are_not_inside_by_the_margin_only(on_the_circle):
     g = np.random.default_rng(1)
-    poles = [0.5, 1.5, -2.5, 1.0]
+    poles = [0.5, 1.4, -2.5, on_the_circle]
     pair = 1.25 * np.array([[np.cos(1), np.sin(1)], [-np.sin(1), np.cos(1)]])
     a = np.zeros((6, 6))
     a[:4, :4], a[4:, 4:] = np.diag(poles), pair
     basis = g.standard_normal((6, 6))
     found = np.linalg.eigvals(projected(basis @ a @ np.linalg.inv(basis), margin=1e-3))
-    expected = [0.5, 0.5, 0.0, 0.999, 0.75 * np.exp(1j), 0.75 * np.exp(-1j)]
+    expected = [0.5, 0.6, 0.0, 0.999, 0.75 * np.exp(1j), 0.75 * np.exp(-1j)]
     assert np.allclose(np.sort_complex(found), np.sort_complex(expected), atol=1e-9)
 
 
