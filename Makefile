@@ -17,7 +17,7 @@ export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
 
-.PHONY: help demo serve test check format openapi constraints clean
+.PHONY: help demo serve test test-numerical check format openapi constraints clean
 
 help:  ## list the commands
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -34,6 +34,9 @@ FUZZ := tests/acceptance/test_schema_fuzz.py
 test: $(DEV)  ## run all tests on two cores
 	$(BIN)/python -m pytest -n 2 --dist loadgroup --ignore=$(FUZZ) $(PYTEST_ARGS)
 	$(BIN)/python -m pytest $(FUZZ)
+
+test-numerical: $(DEV)  ## run the quick tests of the mathematics alone
+	$(BIN)/python -m pytest -n 2 -m "not slow" tests/identification tests/oed $(PYTEST_ARGS)
 
 check: $(DEV)  ## format, lint, types, and the published OpenAPI document
 	$(BIN)/ruff format --check .
