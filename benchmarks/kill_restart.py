@@ -21,11 +21,13 @@ from typing import Any
 import httpx
 import numpy as np
 
+from tests.support.patience import PATIENCE, until
 from tests.support.server import Server, start_server
 
 SECONDS_HEALTHY_AT_MOST = 3.0
 LONGEST_LIFE_SECONDS = 2.5
 SUBMISSIONS_PER_LIFE = 6
+SECONDS_OF_GRACE = 120.0
 BEFORE_HEALTHY = 0.1
 DESIGNS = 0.25
 COLLECTIONS = ("experiments", "designs")
@@ -73,7 +75,7 @@ class Study:
     def prepare(self) -> None:
         """A first life in which the plant and a stated model are made."""
         server = self._start()
-        with httpx.Client(base_url=server.url) as client:
+        with httpx.Client(base_url=server.url, timeout=PATIENCE) as client:
             self.plant = client.post("/v1/plants", json=PLANT).raise_for_status().json()["id"]
             stated = MODEL | {"plantId": self.plant}
             self.model = client.post("/v1/models/stated", json=stated).raise_for_status().json()["id"]
@@ -87,7 +89,7 @@ class Study:
             return self._kill(server)
         server = self._start()
         end = time.monotonic() + self.generator.uniform(0.0, LONGEST_LIFE_SECONDS)
-        with httpx.Client(base_url=server.url) as client:
+        with httpx.Client(base_url=server.url, timeout=PATIENCE) as client:
             self.interrupted += self._running(client)
             for submission in self._requests(number):
                 if time.monotonic() < end:
@@ -95,14 +97,14 @@ class Study:
         time.sleep(max(0.0, end - time.monotonic()))
         self._kill(server)
 
-    def finish(self, seconds: float) -> dict[str, Any]:
+    def finish(self) -> dict[str, Any]:
         """A last life in which all work is done and the books are checked."""
         server = self._start()
         try:
-            with httpx.Client(base_url=server.url, timeout=30) as client:
+            with httpx.Client(base_url=server.url, timeout=PATIENCE) as client:
                 for submission in list(self.unanswered.values()):
                     self._submit(client, submission)
-                _wait_until_done(client, seconds)
+                until(lambda: _is_done(client), "the end of all jobs", between=0.25)
                 return self._books(client) | self._lives(server)
         finally:
             server.stop()
@@ -110,14 +112,16 @@ class Study:
     def _start(self) -> Server:
         began = time.monotonic()
         server = start_server(self.directory)
-        server.wait_until_healthy(30.0)
+        server.wait_until_healthy()
         self.seconds_to_health.append(time.monotonic() - began)
         return server
 
     def _kill(self, server: Server) -> None:
         server.kill()
-        time.sleep(0.2)
-        self.children_left += len(list(processes_on(self.directory)))
+        end = time.monotonic() + SECONDS_OF_GRACE
+        while (left := list(processes_on(self.directory))) and time.monotonic() < end:
+            time.sleep(0.05)
+        self.children_left += len(left)
 
     def _running(self, client: httpx.Client) -> int:
         jobs = _all(client, "jobs")
@@ -191,12 +195,8 @@ def _all(client: httpx.Client, collection: str) -> list[dict[str, Any]]:
             return found
 
 
-def _wait_until_done(client: httpx.Client, seconds: float) -> None:
-    deadline = time.monotonic() + seconds
-    while any(job["state"] in ("queued", "running") for job in _all(client, "jobs")):
-        if time.monotonic() > deadline:
-            raise TimeoutError(f"jobs were not done after {seconds} s")
-        time.sleep(0.25)
+def _is_done(client: httpx.Client) -> bool:
+    return all(job["state"] not in ("queued", "running") for job in _all(client, "jobs"))
 
 
 def _identifiers(resources: list[dict[str, Any]], field_name: str) -> list[str]:
@@ -219,14 +219,14 @@ def processes_on(directory: Path) -> Iterator[int]:
                 continue
 
 
-def run(kills: int, seed: int, directory: Path, seconds: float = 300.0) -> dict[str, Any]:
+def run(kills: int, seed: int, directory: Path) -> dict[str, Any]:
     """Kill a server so many times; returns what was found."""
     began = time.monotonic()
     study = Study(directory, np.random.default_rng(seed))
     study.prepare()
     for number in range(1, kills):
         study.live(number)
-    report = {"kills": kills, "seed": seed, **study.finish(seconds)}
+    report = {"kills": kills, "seed": seed, **study.finish()}
     in_time = not report["lateStarts"]
     return report | {"seconds": round(time.monotonic() - began, 1), "ok": is_good(report), "healthyInTime": in_time}
 

@@ -10,6 +10,7 @@ import httpx
 import pytest
 
 from benchmarks.kill_restart import DESIGN, MODEL, PLANT, is_good, processes_on, run
+from tests.support.patience import PATIENCE, until
 from tests.support.server import running_server
 
 
@@ -22,7 +23,7 @@ def test_nothing_is_lost_when_the_server_is_killed(tmp_path: Path) -> None:
 
 
 def test_a_stop_ends_open_streams_and_children(tmp_path: Path) -> None:
-    with running_server(tmp_path / "data") as server, httpx.Client(base_url=server.url, timeout=20) as client:
+    with running_server(tmp_path / "data") as server, httpx.Client(base_url=server.url, timeout=PATIENCE) as client:
         plant = client.post("/v1/plants", json=PLANT).json()["id"]
         model = client.post("/v1/models/stated", json=MODEL | {"plantId": plant}).json()["id"]
         body = DESIGN | {"plantId": plant, "modelId": model}
@@ -31,7 +32,7 @@ def test_a_stop_ends_open_streams_and_children(tmp_path: Path) -> None:
             lines = stream.iter_lines()
             assert next(lines).startswith("id: ")
             server.process.send_signal(signal.SIGTERM)
-            server.process.wait(timeout=15)
-    assert list(processes_on(tmp_path / "data")) == []
+            server.process.wait(timeout=PATIENCE)
+    until(lambda: not list(processes_on(tmp_path / "data")), "the end of all processes")
     assert "Application shutdown complete" in server.log_text()
     assert "Traceback" not in server.log_text()

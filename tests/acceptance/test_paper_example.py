@@ -11,7 +11,7 @@ def made(api: Api) -> dict[str, Json]:
     """All designs by their names, submitted together."""
     plant, model = prepared(api)
     jobs = {figure.name: api.post("/designs", figure.body(plant, model)) for figure in FIGURES}
-    return {name: api.result(job, 120.0) for name, job in jobs.items()}
+    return {name: api.result(job) for name, job in jobs.items()}
 
 
 @pytest.mark.parametrize("figure", FIGURES, ids=lambda figure: figure.name)

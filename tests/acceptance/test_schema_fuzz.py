@@ -24,6 +24,7 @@ from tests.support import responses
 from tests.support.api import Api, Json
 from tests.support.client import OPENAPI
 from tests.support.paper import FIGURES, THETA, prepared
+from tests.support.patience import PATIENCE
 from tests.support.server import Server, running_server
 
 CHECKS: list[CheckFunction] = [
@@ -114,7 +115,7 @@ def test_answers_are_as_promised(
     known: dict[str, str],
     in_state_space: dict[str, str],
 ) -> None:
-    asked = {"base_url": fuzzed.url, "session": session, "checks": checks(case), "timeout": 20}
+    asked = {"base_url": fuzzed.url, "session": session, "checks": checks(case), "timeout": PATIENCE}
     case.call_and_validate(**asked)
     sent = (case.path_parameters, case.body)
     if case.path.endswith("/state-space"):

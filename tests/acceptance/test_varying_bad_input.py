@@ -277,10 +277,8 @@ def test_a_running_job_says_how_far_it_is_and_can_be_cancelled(api: Api, plant: 
     slow = {**COX, "refinement": False, "corrections": 0}
     request = {"plantId": plant["id"], "experimentId": record, "estimator": slow, "structure": structure}
     job = api.post("/models/varying", {**request, "refinement": {"kind": "output_error", "maxIterations": 1000}})
-    end = time.monotonic() + 60
     while not (job["state"] == "running" and "likelihood" in (job["progress"]["message"] or "")):
         assert job["state"] in ("queued", "running")
-        assert time.monotonic() < end, job
         time.sleep(0.02)
         job = api.get(f"/jobs/{job['id']}")
     assert 0.5 <= job["progress"]["fraction"] < 1

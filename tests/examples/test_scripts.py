@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.support.patience import PATIENCE
+
 
 def shown(repository: Path, name: str, *arguments: str) -> str:
     script = repository / "examples" / name
@@ -15,7 +17,7 @@ def shown(repository: Path, name: str, *arguments: str) -> str:
         capture_output=True,
         text=True,
         check=True,
-        timeout=120,
+        timeout=PATIENCE,
         env=_environment(repository),
     )
     assert finished.stderr == ""

@@ -29,6 +29,8 @@ DRAW_MAP = """async ([address, rows, columns]) => {{
   }});
 }}"""
 
+TWO_FRAMES = "new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(done))))"
+
 DRAW_PLOTS = """async (address) => {
   const { axis, linkAxes, plot } = await import(address);
   const [near, far] = ["near", "far"].map((id) => {
@@ -51,7 +53,7 @@ def module(visit: Visit, name: str) -> str:
 def draw_map(visit: Visit, rows: int, columns: int) -> None:
     script = DRAW_MAP.format(address=repr(module(visit, "map.js")))
     visit.page.evaluate(script, ["", rows, columns])
-    visit.page.wait_for_timeout(100)
+    visit.page.evaluate(TWO_FRAMES)
 
 
 def test_every_page_is_a_shell_with_a_strict_policy(server: Server) -> None:

@@ -19,7 +19,7 @@ def check(visit: Visit) -> None:
 
 
 def gone_to(visit: Visit, path: str) -> None:
-    visit.page.wait_for_url(re.compile(f"{path}$"), timeout=40_000)
+    visit.page.wait_for_url(re.compile(f"{path}$"))
     visit.wait()
     check(visit)
 

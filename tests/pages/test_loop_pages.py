@@ -88,7 +88,7 @@ def test_a_refused_extension_says_so_at_its_field(visit: Visit, known: Json) -> 
 def test_effects_are_added_until_noise_is_left(visit: Visit, known: Json, tmp_path: Path, server: Server) -> None:
     page = visit.open(f"/plants/{known['plant']}/diagnose/{known['diagnosis']}")
     page.get_by_role("button", name="Add effects until noise explains what is left").click()
-    page.wait_for_url(re.compile(r"/history\?model=\w+$"), timeout=40_000)
+    page.wait_for_url(re.compile(r"/history\?model=\w+$"))
     visit.wait()
     grown = Api(server.url).get(f"/models/{page.url.rpartition('=')[2]}")
     assert grown["extension"]["heldOutExperimentIds"] == known["heldOut"]
@@ -127,7 +127,7 @@ def test_what_cannot_be_told_apart_is_decided_by_a_design(visit: Visit, server: 
     page = visit.open(f"/plants/{example['plantId']}/diagnose/{diagnosis['id']}")
     assert "cannot be told apart here: delay and first-order lag" in page.locator("#verdict").inner_text()
     page.get_by_role("button", name="Design the deciding experiment").click()
-    page.wait_for_url(re.compile(r"/design/\w+$"), timeout=40_000)
+    page.wait_for_url(re.compile(r"/design/\w+$"))
     visit.wait()
     asked, expected = page.get_by_role("row", name="delay or lag?").get_by_role("cell").all_inner_texts()[:2]
     assert asked.startswith("90.0")

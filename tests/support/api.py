@@ -1,10 +1,11 @@
 """A small HTTP client of the service, for tests that look at what it answers."""
 
-import time
 from dataclasses import dataclass
 from typing import Any
 
 import httpx
+
+from tests.support.patience import PATIENCE, until
 
 Json = dict[str, Any]
 
@@ -25,7 +26,7 @@ class Api:
 
     def __post_init__(self) -> None:
         limits = httpx.Limits(keepalive_expiry=2.0)  # sooner than the server closes idle connections
-        self.http = httpx.Client(base_url=f"{self.url}/v1", timeout=60.0, limits=limits)
+        self.http = httpx.Client(base_url=f"{self.url}/v1", timeout=PATIENCE, limits=limits)
 
     def get(self, path: str, **query: Any) -> Json:
         return self._json(self.http.get(self._path(path), params=query))
@@ -38,28 +39,28 @@ class Api:
     def post(self, path: str, body: Any) -> Json:
         return self._json(self.http.post(self._path(path), json=body))
 
-    def made(self, path: str, body: Any, seconds: float = 120.0) -> Json:
+    def made(self, path: str, body: Any) -> Json:
         """Start a job, wait for it, and get what it made; raises JobFailedError when it fails."""
-        return self.result(self.post(path, body), seconds)
+        return self.result(self.post(path, body))
 
-    def uploaded(self, name: str, content: bytes, seconds: float = 60.0, **fields: Any) -> Json:
+    def uploaded(self, name: str, content: bytes, **fields: Any) -> Json:
         """Bring in a file as an experiment."""
         answer = self.http.post("/experiments/files", data=fields, files={"file": (name, content)})
-        return self.result(self._json(answer), seconds)
+        return self.result(self._json(answer))
 
-    def result(self, job: Json, seconds: float) -> Json:
-        return self.get(self.finished(job, seconds)["result"]["href"])
+    def result(self, job: Json) -> Json:
+        return self.get(self.finished(job)["result"]["href"])
 
-    def finished(self, job: Json, seconds: float = 120.0) -> Json:
+    def finished(self, job: Json) -> Json:
         """Wait for a job to succeed."""
-        end = time.monotonic() + seconds
-        while job["state"] in ("queued", "running"):
-            assert time.monotonic() < end, f"the job is not done after {seconds} s: {job}"
-            time.sleep(0.02)
-            job = self.get(f"/jobs/{job['id']}")
+        job = until(lambda: self._final(job["id"]), f"the end of {job}")
         if job["state"] != "succeeded":
             raise JobFailedError(job)
         return job
+
+    def _final(self, job_id: str) -> Json | None:
+        job = self.get(f"/jobs/{job_id}")
+        return None if job["state"] in ("queued", "running") else job
 
     def refused(self, path: str, body: Any) -> Json:
         """The problem that a body is answered with; it must be a 4xx one."""

@@ -6,6 +6,8 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from tests.support.patience import PATIENCE
+
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
@@ -17,6 +19,7 @@ DRAW_ALL = """async () => {
     while (plot.isConnected && plot.dataset.waits !== undefined) await new Promise((resolve) => setTimeout(resolve, 5));
   }
 }"""
+SETTLED = "Promise.all(document.getAnimations().map((one) => one.finished.catch(() => null)))"
 WIDTHS = (390, 1280)
 
 
@@ -27,7 +30,7 @@ class Visit:
         self.page = page
         self.faults: list[str] = []
         self._url = url
-        page.set_default_timeout(60_000)
+        page.set_default_timeout(PATIENCE * 1000)
         page.on("console", self._console)
         page.on("pageerror", lambda error: self.faults.append(f"fault: {error}"))
         page.on("request", self._request)
@@ -53,7 +56,7 @@ class Visit:
             self.page.emulate_media(color_scheme=scheme)
             for width in WIDTHS:
                 self.page.set_viewport_size({"width": width, "height": 900})
-                self.page.wait_for_timeout(300)
+                self.page.evaluate(SETTLED)
                 self.page.screenshot(path=folder / f"{name}-{scheme}-{width}.png", full_page=True)
         self.page.emulate_media(color_scheme="light")
 

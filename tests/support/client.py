@@ -4,11 +4,11 @@ import importlib
 import io
 import subprocess
 import sys
-import time
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+from tests.support.patience import PATIENCE, until
 from tests.support.sources import ROOT
 
 OPENAPI = ROOT / "openapi" / "openapi.json"
@@ -63,7 +63,7 @@ class Caller:
     def __init__(self, package: ModuleType, url: str) -> None:
         self.package = package
         self.m = documents(package)
-        self.client = package.Client(base_url=url, timeout=30.0)
+        self.client = package.Client(base_url=url, timeout=PATIENCE)
 
     def __call__(self, tag: str, name: str, *arguments: object, **options: object) -> Any:
         """The document that an operation answers with; whatever is no success is an error of the test."""
@@ -71,13 +71,12 @@ class Caller:
         assert 200 <= answer.status_code < 300, answer.parsed
         return answer.parsed
 
-    def finished(self, job: Any, seconds: float = 30.0) -> str:
+    def finished(self, job: Any) -> str:
         """Identifier of what a job made."""
-        states = self.m.JobState
-        end = time.monotonic() + seconds
-        while job.state in (states.QUEUED, states.RUNNING):
-            assert time.monotonic() < end, f"the job is not done after {seconds} s: {job}"
-            time.sleep(0.05)
-            job = self("jobs", "get_job", job.id)
-        assert job.state is states.SUCCEEDED, job.problem
-        return str(job.result.id)
+        done = until(lambda: self._final(job.id), f"the end of {job}")
+        assert done.state is self.m.JobState.SUCCEEDED, done.problem
+        return str(done.result.id)
+
+    def _final(self, job_id: str) -> Any:
+        job = self("jobs", "get_job", job_id)
+        return None if job.state in (self.m.JobState.QUEUED, self.m.JobState.RUNNING) else job

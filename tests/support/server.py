@@ -13,6 +13,8 @@ from pathlib import Path
 from urllib.error import URLError
 from urllib.request import urlopen
 
+from tests.support.patience import PATIENCE
+
 ROOT = Path(__file__).resolve().parents[2]
 
 
@@ -37,12 +39,12 @@ class Server:
 
     def healthy(self) -> bool:
         try:
-            with urlopen(f"{self.url}/v1/health", timeout=5) as answer:
+            with urlopen(f"{self.url}/v1/health", timeout=PATIENCE) as answer:
                 return bool(answer.status == 200)
         except (URLError, OSError):
             return False
 
-    def wait_until_healthy(self, seconds: float = 30.0) -> float:
+    def wait_until_healthy(self, seconds: float = PATIENCE) -> float:
         """Seconds until /v1/health answers 200; RuntimeError with the log when the process ends or time runs out."""
         began = time.monotonic()
         while time.monotonic() - began < seconds:
@@ -56,15 +58,15 @@ class Server:
     def kill(self) -> None:
         """End the process at once, as a power cut would (SIGKILL)."""
         self.process.kill()
-        self.process.wait(timeout=30)
+        self.process.wait(timeout=PATIENCE)
 
     def stop(self) -> None:
-        """Ask the process to end (SIGTERM); kill it after 10 s."""
+        """Ask the process to end (SIGTERM); kill it when it does not."""
         if self.process.poll() is not None:
             return
         self.process.send_signal(signal.SIGTERM)
         try:
-            self.process.wait(timeout=10)
+            self.process.wait(timeout=PATIENCE)
         except subprocess.TimeoutExpired:
             self.kill()
 

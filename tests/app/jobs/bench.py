@@ -1,6 +1,6 @@
 """What tests of jobs do again and again."""
 
-import time
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -8,6 +8,7 @@ from fastapi.testclient import TestClient
 
 from app.container import Container
 from app.jobs.records import JobRecord
+from tests.support.patience import until
 
 
 @dataclass(frozen=True)
@@ -23,16 +24,19 @@ class Bench:
             "trial", payload, "trials", idempotency_key=key, request_fingerprint=fingerprint
         )
 
-    def wait(self, job: JobRecord, *states: str, seconds: float = 15.0) -> dict[str, Any]:
+    def wait(self, job: JobRecord, *states: str) -> dict[str, Any]:
         """The job over HTTP once it is in one of `states`, by default once it has finished."""
         wanted = states or ("succeeded", "failed", "cancelled")
-        deadline = time.monotonic() + seconds
-        while time.monotonic() < deadline:
-            document: dict[str, Any] = self.client.get(f"/v1/jobs/{job.id}").json()
-            if document["state"] in wanted:
-                return document
-            time.sleep(0.02)
-        raise AssertionError(f"after {seconds} s the job is {document}")
+        return until(lambda: self._in_state(job.id, wanted), lambda: f"{wanted}: {self.look(job.id)}")
+
+    def look(self, job_id: str) -> dict[str, Any]:
+        """The job over HTTP."""
+        document: dict[str, Any] = self.client.get(f"/v1/jobs/{job_id}").json()
+        return document
+
+    def _in_state(self, job_id: str, wanted: Sequence[str]) -> dict[str, Any] | None:
+        document = self.look(job_id)
+        return document if document["state"] in wanted else None
 
     def run(self, **payload: Any) -> dict[str, Any]:
         """Submit a trial job and wait until it has finished."""

@@ -16,7 +16,6 @@ def bench(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Bench]:
     settings = Settings(
         data_dir=tmp_path_factory.mktemp("data"),
         task_packages=TASK_PACKAGES,
-        job_time_limit_seconds=3.0,
         job_memory_limit_bytes=512 * MEBIBYTE,
     )
     application = create_app(settings)

@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 from tests.app.jobs.bench import Bench
+from tests.support.patience import PATIENCE
 
 
 @dataclass(frozen=True)
@@ -51,7 +52,7 @@ def test_a_stream_that_began_before_the_job_ends_with_it(bench: Bench) -> None:
     live: list[Sent] = []
     watcher = Thread(target=lambda: live.extend(watch(bench, job.id)))
     watcher.start()
-    watcher.join(10)
+    watcher.join(PATIENCE)
     assert not watcher.is_alive()
     assert [event.name for event in live][-1] == "succeeded"
     assert live == watch(bench, job.id)

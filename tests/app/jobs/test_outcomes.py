@@ -1,13 +1,17 @@
 """Every way in which a job can end, each in a real child process."""
 
 import os
-import time
 from pathlib import Path
+from typing import Any
 
 import pytest
+from fastapi.testclient import TestClient
 
 from app.errors import ConflictError
+from app.main import create_app
+from app.settings import Settings
 from tests.app.jobs.bench import Bench
+from tests.support.patience import until
 
 
 def is_there(pid: int) -> bool:
@@ -65,19 +69,23 @@ def test_memory_limit_fails_the_job_and_says_what_to_change(bench: Bench) -> Non
     assert "LPV_OED_JOB_MEMORY_LIMIT_BYTES" in document["problem"]["detail"]
 
 
-def test_time_limit_ends_the_job_and_says_what_to_change(bench: Bench) -> None:
-    document = bench.run(seconds=60.0, steps=1)
+def test_time_limit_ends_the_job_and_says_what_to_change(settings: Settings) -> None:
+    limited = settings.model_copy(update={"job_time_limit_seconds": 0.5})
+    application = create_app(limited)
+    with TestClient(application, base_url="http://127.0.0.1") as client:
+        document = Bench(client, application.state.container).run(seconds=3600.0, steps=1)
     assert document["problem"]["type"] == "urn:lpv-oed:problem:time-limit"
     assert "LPV_OED_JOB_TIME_LIMIT_SECONDS" in document["problem"]["detail"]
 
 
-def test_killed_child_fails_its_job_and_no_other(bench: Bench) -> None:
-    other = bench.submit(seconds=1.5, steps=10, name="other")
+def test_killed_child_fails_its_job_and_no_other(bench: Bench, tmp_path: Path) -> None:
+    other = bench.submit(hold=str(tmp_path / "go"), name="other")
     bench.wait(other, "running")
     document = bench.run(end="kill")
     assert document["state"] == "failed"
     assert document["problem"]["type"] == "urn:lpv-oed:problem:job-crashed"
     assert "signal 9" in document["problem"]["detail"]
+    (tmp_path / "go").touch()
     assert bench.wait(other)["state"] == "succeeded"
     assert bench.run(name="next")["state"] == "succeeded"
 
@@ -86,7 +94,7 @@ def test_idle_child_that_was_killed_is_replaced(bench: Bench) -> None:
     pids = {_pid(bench, bench.run()) for _ in range(4)}
     for pid in pids:
         os.kill(pid, 9)
-    time.sleep(0.3)
+    until(lambda: not any(map(is_there, pids)), "the end of the children")
     for _ in range(3):
         document = bench.run()
         assert document["state"] == "succeeded", document
@@ -100,28 +108,25 @@ def _pid(bench: Bench, document: dict[str, dict[str, str]]) -> int:
 
 def test_cancelling_a_running_job_ends_its_process(bench: Bench, tmp_path: Path) -> None:
     note = tmp_path / "pid"
-    job = bench.submit(seconds=60.0, steps=600, note=str(note))
+    job = bench.submit(hold=str(tmp_path / "never"), note=str(note))
     bench.wait(job, "running")
-    while not note.exists():
-        time.sleep(0.02)
+    until(note.exists, "the start of the task")
     pid = int(note.read_text())
     assert is_there(pid)
     answer = bench.client.post(f"/v1/jobs/{job.id}/cancellation")
     assert answer.status_code == 200
     assert answer.json()["state"] == "cancelled"
-    deadline = time.monotonic() + 2
-    while is_there(pid) and time.monotonic() < deadline:
-        time.sleep(0.02)
-    assert not is_there(pid)
+    until(lambda: not is_there(pid), "the end of the child")
     assert bench.run()["state"] == "succeeded"
     assert bench.client.get(f"/v1/jobs/{job.id}").json()["state"] == "cancelled"
     assert bench.container.resources.find("trials", job.resource_id) is None
 
 
-def test_cancelling_a_queued_job_keeps_it_from_starting(bench: Bench) -> None:
-    busy = [bench.submit(seconds=1.0, steps=5) for _ in range(bench.container.settings.workers)]
+def test_cancelling_a_queued_job_keeps_it_from_starting(bench: Bench, tmp_path: Path) -> None:
+    busy = [bench.submit(hold=str(tmp_path / "go")) for _ in range(bench.container.settings.workers)]
     queued = bench.submit(name="never")
     assert bench.client.post(f"/v1/jobs/{queued.id}/cancellation").json()["state"] == "cancelled"
+    (tmp_path / "go").touch()
     for job in busy:
         assert bench.wait(job)["state"] == "succeeded"
     document = bench.wait(queued)
@@ -139,15 +144,20 @@ def test_cancelling_a_finished_job_is_a_conflict(bench: Bench) -> None:
         bench.container.ledger.cancel(document["id"])
 
 
-def test_progress_is_told_in_words_and_numbers(bench: Bench) -> None:
-    job = bench.submit(seconds=1.5, steps=10)
-    bench.wait(job)
-    told = [event.data["progress"] for event in bench.container.ledger.events(job.id) if event.name == "progress"]
-    fractions = [progress["fraction"] for progress in told]
-    assert len(told) >= 3
-    assert fractions == sorted(fractions)
-    assert all(0 <= fraction < 1 for fraction in fractions)
-    assert any(progress["message"].startswith("step ") and progress["message"].endswith("✓") for progress in told)
+def test_progress_is_told_in_words_and_numbers(bench: Bench, tmp_path: Path) -> None:
+    job = bench.submit(seconds=0.9, steps=3, pace=str(tmp_path))
+    for step in range(3):
+        until(lambda step=step: len(told(bench, job.id)) > step, f"step {step}")  # type: ignore[misc]
+        (tmp_path / str(step)).touch()
+    assert bench.wait(job)["state"] == "succeeded"
+    progress = told(bench, job.id)
+    assert [one["message"] for one in progress] == [f"step {number} of 3 ✓" for number in (1, 2, 3)]
+    assert [one["fraction"] for one in progress] == pytest.approx([0, 1 / 3, 2 / 3])
+
+
+def told(bench: Bench, job_id: str) -> list[dict[str, Any]]:
+    """The progress of a job as it was written down."""
+    return [event.data["progress"] for event in bench.container.ledger.events(job_id) if event.name == "progress"]
 
 
 def test_list_filters_and_pages(bench: Bench) -> None:

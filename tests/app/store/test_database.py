@@ -17,6 +17,7 @@ from app.store.database import Database
 from app.store.identifiers import is_identifier, new_identifier
 from app.store.lock import DirectoryLock
 from app.store.rows import Base, ResourceRow
+from tests.support.patience import PATIENCE
 
 
 @pytest.fixture
@@ -87,11 +88,11 @@ def test_readers_do_not_wait_for_a_writer_and_see_what_is_committed(database: Da
             session.add(row())
             session.flush()
             written.set()
-            assert go_on.wait(10)
+            assert go_on.wait(PATIENCE)
 
     with ThreadPoolExecutor(1) as pool:
         writer = pool.submit(write)
-        assert written.wait(10)
+        assert written.wait(PATIENCE)
         with database.read() as session:
             assert session.scalars(select(ResourceRow)).all() == []
         go_on.set()

@@ -24,7 +24,15 @@ def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
     for step in range(steps):
         context.progress(step / steps, f"step {step + 1} of {steps} ✓")
         time.sleep(payload.get("seconds", 0.0) / steps)
+        _wait_for(payload.get("pace"), str(step))
+    _wait_for(payload.get("hold"))
     return _END[payload.get("end", "return")](payload, context)
+
+
+def _wait_for(place: str | None, name: str = "") -> None:
+    """Go on once there is such a file; at once where there is no `place`."""
+    while place is not None and not Path(place, name).exists():
+        time.sleep(0.02)
 
 
 def _succeed(payload: dict[str, Any], context: TaskContext) -> TaskResult:
