@@ -1,0 +1,1 @@
+"""Campaigns read from a folder, diagnosed and answered; see `benchmarks.cases.__main__`."""
