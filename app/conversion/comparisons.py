@@ -14,6 +14,7 @@ from app.schemas.comparisons import (
     ComparisonPart,
     Data,
     DisturbanceDocument,
+    NoteDocument,
     PointTest,
 )
 from app.schemas.experiments import Experiment
@@ -41,6 +42,7 @@ def part_document(
         dynamics=_test(found.dynamics),
         between_harmonics=test_documents(found.between),
         disturbances=[_disturbance(experiments[m].id, one) for m, one in found.disturbances],
+        notes=[NoteDocument(experiment_id=experiments[m].id, text=text) for m, text in found.notes],
     )
 
 

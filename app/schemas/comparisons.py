@@ -67,6 +67,13 @@ class DisturbanceDocument(CamelModel):
     p_value: Double
 
 
+class NoteDocument(CamelModel):
+    """What is to be said of one experiment."""
+
+    experiment_id: str
+    text: str
+
+
 class ComparisonPart(CamelModel):
     """Tests of the experiments that were fitted, or of those that were held out, or of one with varying scheduling.
 
@@ -94,6 +101,9 @@ class ComparisonPart(CamelModel):
     between_harmonics: list[TestDocument] = Field(description="disturbances with frequencies of their own")
     disturbances: list[DisturbanceDocument] = Field(
         default_factory=list, description="the strongest of them in each experiment that has one, fitted"
+    )
+    notes: list[NoteDocument] = Field(
+        default_factory=list, description="what to mind of single experiments, such as noise that could not be told"
     )
     simulation_errors: list[TestDocument] = Field(
         default_factory=list,

@@ -27,7 +27,8 @@ class Batch:
     2 `half_width` + 1 lines were pooled. `signals` (M, L) the input over one period, None for frequency responses.
     `ends` (M, 2, L): what correlated noise at the ends of a record does to the mean period, see `noise.NoiseOfMean`.
     `scaled`: False when only the ratios of the variances are known. `members`: places in the user's list. `logged`:
-    quantities (M,) that were written down beside the scheduling variables, by their names.
+    quantities (M,) that were written down beside the scheduling variables, by their names. `disturbances`: of each
+    record, taken off the outputs; `notes`: what else is to be said of measurements, by their place in the list.
     """
 
     points: FloatArray
@@ -45,7 +46,8 @@ class Batch:
     ends: FloatArray | None = None
     scaled: bool = True
     between: tuple[FloatArray, ...] = field(default=())
-    disturbances: tuple[Disturbance | None, ...] = ()
+    disturbances: tuple[tuple[Disturbance, ...], ...] = ()
+    notes: tuple[tuple[int, str], ...] = ()
     logged: Mapping[str, FloatArray] = field(default_factory=dict)
 
     @cached_property

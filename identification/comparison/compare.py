@@ -47,7 +47,8 @@ class Comparison:
 
     `tests` are empty where the size of the noise is not known. `dependence` and `dynamics` split the lack of fit: the
     first asks whether one LTI model per operating point would fit better than the dependence on p, the second whether
-    even those do not fit. `fit_percent` (experiments,) 100 (1 − ‖y − ŷ‖/‖y − ȳ‖) at the excited lines.
+    even those do not fit. `notes`: what is to be said of measurements, by their place in the list.
+    `fit_percent` (experiments,) 100 (1 − ‖y − ŷ‖/‖y − ȳ‖) at the excited lines.
     """
 
     maps: tuple[MisfitMap, ...]
@@ -60,6 +61,7 @@ class Comparison:
     between: tuple[TestResult, ...]
     disturbances: tuple[tuple[int, Disturbance], ...]
     fit_percent: FloatArray
+    notes: tuple[tuple[int, str], ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,8 +107,9 @@ def compare(model: ExtendedModel, batches: Sequence[Batch], fitted: bool = True)
     percent = _fit_percent(batches, flows)
     between = tuple(strongest_line(powers) for batch in batches for powers in batch.between)
     disturbances = _disturbances(batches)
+    notes = tuple(sorted(note for batch in batches for note in batch.notes))
     if not rows.scaled:
-        return Comparison(maps, None, (), (), (), None, None, between, disturbances, percent)
+        return Comparison(maps, None, (), (), (), None, None, between, disturbances, percent, notes)
     everything = np.ones(len(z), dtype=np.bool_)
     overall = judge.test("lack of fit", everything)
     dependence, dynamics = _split(rows, flows, judge, overall)
@@ -121,14 +124,14 @@ def compare(model: ExtendedModel, batches: Sequence[Batch], fitted: bool = True)
         between,
         disturbances,
         percent,
+        notes,
     )
 
 
 def _disturbances(batches: Sequence[Batch]) -> tuple[tuple[int, Disturbance], ...]:
     """The disturbances found, with the places of their experiments in the user's list."""
-    every = [
-        (int(m), one) for b in batches for m, one in zip(b.members, b.disturbances, strict=False) if one is not None
-    ]
+    pairs = [pair for b in batches for pair in zip(b.members, b.disturbances, strict=False)]
+    every = [(int(m), one) for m, found in pairs for one in found]
     return tuple(sorted(every, key=lambda pair: pair[0]))
 
 

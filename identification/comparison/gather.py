@@ -7,13 +7,19 @@ import numpy as np
 
 from identification.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from identification.comparison.batch import EVEN, EXCITED, ODD, Batch
-from identification.comparison.disturbance import find_disturbance
+from identification.comparison.between import flattened
+from identification.comparison.disturbance import find_disturbances, without
 from identification.comparison.noise import NoiseOfMean, noise_of_mean
 from identification.errors import MisuseError
 from identification.response_tests import real_lines
 from identification.signals import FrequencyResponse, Measurement, TimeRecord
 from identification.spectral.local_polynomial import LocalPolynomial
 from identification.spectral.periodic_average import PeriodicAverage, excited_lines
+
+CLAMPED = (
+    "the spectrum of the noise is too steep to be told from how the periods differ; its variance was held at a"
+    " thousandth of that around it at some lines"
+)
 
 
 def gather(
@@ -22,9 +28,9 @@ def gather(
     """Batches of the experiments, those on the same grid together, in the order in which the grids first occur.
 
     Periodic records give their mean spectrum at all lines of the period, excited or not, with the variance from how
-    the periods differ, pooled over fifteen lines; other records the frequency response that the local
-    polynomial method finds. `mean_value` keeps the line at ω = 0 of periodic records. `logged`: for each experiment the
-    quantities written down beside the scheduling variables; those of all experiments are kept.
+    the periods differ, pooled over fifteen lines, sine waves between the lines taken off; other records the frequency
+    response that the local polynomial method finds. `mean_value` keeps the line at ω = 0 of periodic records.
+    `logged`: for each experiment the quantities written down beside the scheduling variables; those of all are kept.
     """
     if not experiments:
         raise MisuseError("there is nothing to compare with; give at least one experiment", "experiments")
@@ -74,6 +80,7 @@ def _joined(group: list[Batch]) -> Batch:
         scaled=first.scaled,
         between=between,
         disturbances=tuple(one for part in group for one in part.disturbances),
+        notes=tuple(one for part in group for one in part.notes),
         logged={name: np.concatenate([part.logged[name] for part in group]) for name in first.logged},
         **stacked,
     )
@@ -120,9 +127,10 @@ def _of_response(m: int, data: FrequencyResponse) -> Batch:
 def _of_periodic(m: int, record: TimeRecord, mean_value: bool) -> Batch:
     period = record.period
     assert period is not None
-    estimator = PeriodicAverage()
-    u, y = (spectra / period for spectra in estimator.steady_spectra(record))
-    count = len(y)
+    count = len(PeriodicAverage().steady_spectra(record)[1])
+    disturbances = find_disturbances(record, count)
+    estimator = PeriodicAverage(drop_periods=record.period_count - count)
+    u, y = (spectra / period for spectra in estimator.steady_spectra(without(record, disturbances)))
     excited = excited_lines(u, estimator.threshold)
     omega = np.asarray(2 * np.pi * np.fft.rfftfreq(period, record.sample_time), dtype=np.float64)
     noise = _noise(u, y, excited, real_lines(omega, record.sample_time))
@@ -145,7 +153,8 @@ def _of_periodic(m: int, record: TimeRecord, mean_value: bool) -> Batch:
         half_width=noise.half_width,
         ends=noise.ends[None],
         between=(between_harmonics(record, count),),
-        disturbances=(find_disturbance(record, count),),
+        disturbances=(disturbances,),
+        notes=((m, CLAMPED),) if noise.clamped else (),
     )
 
 
@@ -163,7 +172,7 @@ def _classes(excited: BoolArray) -> IntArray:
 
 
 def between_harmonics(record: TimeRecord, count: int) -> FloatArray:
-    """Power of the output between the harmonics, (lines,): what does not repeat from period to period.
+    """Power of the output between the harmonics, (lines,): what does not repeat, where it wanders its differences.
 
     The last `count` periods are transformed together; of every `count` lines the one that is a harmonic is left out.
     """
@@ -171,4 +180,5 @@ def between_harmonics(record: TimeRecord, count: int) -> FloatArray:
     first = (record.period_count - count) * record.period
     signal = record.output[first : first + count * record.period]
     lines = abs(np.fft.rfft(signal) / len(signal)) ** 2
-    return np.asarray(lines[np.arange(len(lines)) % count != 0])
+    free = np.flatnonzero(np.arange(len(lines)) % count)
+    return flattened(np.asarray(lines[free], dtype=np.float64), free / len(signal))

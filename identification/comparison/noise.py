@@ -12,6 +12,7 @@ from identification.comparison.batch import Batch
 NEIGHBOURS = 7
 ORDER, NUMBERS_EACH = 4, 192
 FINER = 4
+SMALLEST = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,13 +21,15 @@ class NoiseOfMean:
 
     `variance` σ̂² (K,), at real lines twice that of the real number; `freedom` real degrees of freedom of each;
     `half_width` w; `ends` (2, N), ℓ and ℓ': what correlated noise at the ends of the record adds to the covariance of
-    the mean period, −(ℓ ℓ'ᵀ + ℓ' ℓᵀ).
+    the mean period, −(ℓ ℓ'ᵀ + ℓ' ℓᵀ). `clamped`: lines whose variance was held at a thousandth of what the periods
+    differ by around it, because the shape of the spectrum would have put it below.
     """
 
     variance: FloatArray
     freedom: float
     half_width: int
     ends: FloatArray
+    clamped: int = 0
 
 
 def noise_of_mean(errors: ComplexArray, real: BoolArray) -> NoiseOfMean:
@@ -35,8 +38,8 @@ def noise_of_mean(errors: ComplexArray, real: BoolArray) -> NoiseOfMean:
         σ̂_k² = S_k · mean over 2w + 1 lines of s_k'/D_k',   s_k = Σ_p |E_kp − Ē_k|²/(P(P − 1)),   2(P − 1)(2w + 1)
 
     [PintelonSchoukens2012, Section 2.5] with the shape of the spectrum divided out before lines are pooled: S is an
-    autoregression fitted to s, D what s then is on average with the leakage of one period and of the whole record.
-    Without that a steep spectrum is smeared over the window.
+    autoregression 1/|A(e^{jω})|² fitted to s, D what s then is on average with the leakage of one period and of the
+    whole record. Without that a steep spectrum is smeared over the window.
     """
     count, lines = errors.shape
     spread = np.var(errors, axis=0, ddof=1) / count
@@ -45,26 +48,32 @@ def noise_of_mean(errors: ComplexArray, real: BoolArray) -> NoiseOfMean:
         spread[-1] = spread[-2]
     half_width = min(NEIGHBOURS, (int(np.sum(~real)) - 1) // 2)
     period = 2 * lines - (2 if real[-1] else 1)
-    covariance = _autocovariance(spread, period, count)
+    covariance, shape = _autoregression(spread, period, count)
     one, whole = (_periodogram(covariance[:length])[:: length // period] for length in (period, len(covariance)))
-    spectrum = _circulant(covariance, period, count)
-    ratios = spread * (count - 1) / (one - whole)
+    expected = np.maximum(one - whole, SMALLEST * one) / (count - 1)
+    ratios = spread / expected
     ends = _ends(covariance[:period]) * np.sqrt(np.mean(ratios)) / count
-    variance = spectrum * pooled(ratios, half_width, real) * np.where(real, 2.0, 1.0)
-    return NoiseOfMean(variance, 2.0 * (count - 1) * (2 * half_width + 1), half_width, ends)
+    spectrum = shape / (period * count) * pooled(ratios, half_width, real)
+    floor = SMALLEST * pooled(spread, half_width, real)
+    variance = np.maximum(spectrum, floor) * np.where(real, 2.0, 1.0)
+    clamped = int(np.sum(spectrum < floor))
+    return NoiseOfMean(variance, 2.0 * (count - 1) * (2 * half_width + 1), half_width, ends, clamped)
 
 
-def _autocovariance(spread: FloatArray, period: int, count: int) -> FloatArray:
-    """r (P·N,) up to a factor, of an autoregression that has the spectrum s (K,); white where there is little of it."""
+def _autoregression(spread: FloatArray, period: int, count: int) -> tuple[FloatArray, FloatArray]:
+    """r (P·N,) up to a factor, of an autoregression that has the spectrum s (K,), and its spectrum 1/|A(e^{jω})|² (K,).
+
+    That is what r folded without end becomes on the lines of the period. White where there is little data.
+    """
     order = min(ORDER, len(spread) * (count - 1) // NUMBERS_EACH)
     found = np.fft.irfft(spread, n=period)[: order + 1]
     whole = period * count
     if order == 0 or found[0] <= 0:
-        return np.asarray(np.eye(1, whole)[0])
+        return np.asarray(np.eye(1, whole)[0]), np.ones(len(spread))
     found[0] *= 1 + 1e-9
     polynomial = np.concatenate([[1.0], -solve_toeplitz(found[:order], found[1:])])
     white = abs(np.fft.rfft(polynomial, FINER * whole)) ** 2
-    return np.asarray(np.fft.irfft(1 / white)[:whole])
+    return np.asarray(np.fft.irfft(1 / white)[:whole]), np.asarray(1 / white[:: FINER * count])
 
 
 def _periodogram(covariance: FloatArray) -> FloatArray:
@@ -74,13 +83,6 @@ def _periodogram(covariance: FloatArray) -> FloatArray:
     folded = (length - lag) * covariance
     folded[1:] += lag[1:] * covariance[:0:-1]
     return np.asarray(np.fft.rfft(folded).real / length**2)
-
-
-def _circulant(covariance: FloatArray, period: int, count: int) -> FloatArray:
-    """E|Ē_k|² (K,) of P periods if what leaves the record at its end had entered at its start."""
-    folded = covariance[:period].copy()
-    folded[1:] += covariance[period - 1 : 0 : -1]
-    return np.asarray(np.fft.rfft(folded).real / (period * count))
 
 
 def _ends(covariance: FloatArray) -> FloatArray:

@@ -60,7 +60,8 @@ function drawVerdict(comparison, model) {
 
 function drawTests({ parts }, titles, found) {
   const noiseKnown = parts.some((part) => part.noiseKnown);
-  replace(byId("tests"), noiseKnown || parts.some((part) => part.simulationErrors.length) ? [overallTable(parts), disturbanceTable(parts, titles, found.output)]
+  const notes = parts.flatMap((part) => part.notes ?? []).map((one) => message("warning", `${titles.get(one.experimentId) ?? one.experimentId}: ${one.text}.`));
+  replace(byId("tests"), noiseKnown || parts.some((part) => part.simulationErrors.length) ? [...notes, overallTable(parts), disturbanceTable(parts, titles, found.output)]
     : message("warning", "The size of the noise is not known, as these data bring neither variances nor repeated periods; so nobody can say what is more than noise."));
 }
 

@@ -62,6 +62,34 @@ def test_what_leaves_the_record_at_its_end_makes_no_jump_between_the_periods(pol
 REAL = np.arange(40) == 0
 
 
+@pytest.mark.parametrize("cycles", [12.5, 12.37])
+def test_hum_beside_the_lines_of_the_period_leaves_the_noise_as_it_is(cycles):
+    """Folded once, the covariance of a sine between the lines goes negative, and lines got no variance at all."""
+    g = np.random.default_rng(8)
+    time = np.arange(1024) / 256
+    u = np.tile(np.sin(2 * np.pi * 3 * np.arange(256) / 256), 4)
+    noise = 0.01 * g.standard_normal((40, 1024))
+    quiet, loud = (
+        gather([TimeRecord(u, n + a * np.sin(2 * np.pi * cycles * time + n[0] * 99), 0.5, (0.0,), 256) for n in noise])
+        for a in (0.0, 1.0)
+    )
+    ratio = loud[0].variances / quiet[0].variances
+    assert np.mean(ratio) == pytest.approx(1.0, abs=0.03)
+    assert np.all((ratio > 0.6) & (ratio < 1.6))
+    energy = np.sum(loud[0].whiten(loud[0].outputs) ** 2) / loud[0].row_count
+    assert energy == pytest.approx(1.0, abs=0.06)
+
+
+def test_a_spectrum_too_steep_for_the_periods_never_gives_a_line_without_noise():
+    """A narrow line at every period with its own size: nothing that the autoregression gives is negative or nought."""
+    g = np.random.default_rng(2)
+    time = np.arange(256) / 256
+    periods = np.stack([a * np.sin(2 * np.pi * 20.5 * time) for a in g.standard_normal(4)])
+    found = noise_of_mean(np.fft.rfft(periods) / 256, np.arange(129) % 128 == 0)
+    pooled_spread = np.var(np.fft.rfft(periods) / 256, axis=0, ddof=1).mean() / 4
+    assert np.all(found.variance > 1e-6 * pooled_spread)
+
+
 def test_short_periods_are_pooled_as_they_are():
     errors = np.random.default_rng(0).standard_normal((3, 9)) + 0j
     found = noise_of_mean(errors, np.arange(9) % 8 == 0)
