@@ -86,7 +86,7 @@ def simulate_state_space(model: ParameterVaryingStateSpace, input: FloatArray, s
 def _along(dependence: ParameterDependence, theta: FloatArray, scheduling: FloatArray) -> FloatArray:
     """T(p(t)) θ (N, n), a part of the samples at a time."""
     cuts = range(0, len(scheduling), SAMPLES_AT_ONCE)
-    return np.concatenate([dependence.matrix(scheduling[k : k + SAMPLES_AT_ONCE]) @ theta for k in cuts])
+    return np.concatenate([dependence.coefficients(theta, scheduling[k : k + SAMPLES_AT_ONCE]) for k in cuts])
 
 
 def _delayed(signal: FloatArray, lag: int) -> FloatArray:

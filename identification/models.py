@@ -186,8 +186,8 @@ class LpvModel:
 
     def __post_init__(self) -> None:
         n, k = self.structure.size, self.dependence.size
-        if len(self.dependence.bases) != n:
-            raise ShapeError(f"{len(self.dependence.bases)} bases were given for {n} coefficients", "basis")
+        if self.dependence.coefficient_count != n:
+            raise ShapeError(f"{self.dependence.coefficient_count} bases were given for {n} coefficients", "basis")
         if np.shape(self.theta) != (k,):
             raise ShapeError(f"θ has shape {np.shape(self.theta)}, this model has {k} parameters", "theta")
         if np.shape(self.covariance) != (k, k):
@@ -196,7 +196,7 @@ class LpvModel:
     @cached_property
     def plant_size(self) -> int:
         """k_G, the number of entries of θ that belong to G; they come first."""
-        return sum(self.dependence.sizes[: self.structure.n_plant])
+        return self.dependence.parameters_of(self.structure.n_plant)
 
     @property
     def parameter_names(self) -> tuple[str, ...]:
@@ -205,7 +205,7 @@ class LpvModel:
 
     def coefficients(self, points: ArrayLike) -> FloatArray:
         """ζ(p) at the operating points (M, s), as (M, n)."""
-        return self.dependence.matrix(points) @ self.theta
+        return self.dependence.coefficients(self.theta, points)
 
     def frequency_response(self, points: ArrayLike, omega: FloatArray) -> ComplexArray:
         """G(p, ω) at the operating points (M, s) and ω (F,) in rad/s, as (M, F)."""
@@ -213,11 +213,10 @@ class LpvModel:
 
     def response_covariance(self, points: ArrayLike, omega: FloatArray) -> FloatArray:
         """Covariance of (Re G, Im G) at the points (M, s) and ω (F,), as (M, F, 2, 2), to first order in P_θ."""
-        transfer = self.dependence.matrix(points)
-        gradient = self.structure.plant_gradient(transfer @ self.theta, omega)
-        sensitivity = np.einsum("mnf,mnk->mfk", gradient, transfer[:, : self.structure.n_plant, :])
+        gradient = self.structure.plant_gradient(self.coefficients(points), omega)
+        sensitivity = self.dependence.pulled(np.swapaxes(gradient, 1, 2), points)
         parts = np.stack([sensitivity.real, sensitivity.imag], axis=-2)
-        return np.asarray(parts @ self.covariance @ np.swapaxes(parts, -1, -2))
+        return np.asarray(parts @ self.covariance[: self.plant_size, : self.plant_size] @ np.swapaxes(parts, -1, -2))
 
     def poles(self, points: ArrayLike) -> ComplexArray:
         """Poles of G at the operating points (M, s), as (M, n_a)."""

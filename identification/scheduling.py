@@ -1,16 +1,18 @@
 """Scheduling variables, and how the coefficients of a model depend on them: ζ(p) = T(p) θ [Ghosh2018, (2), (3)]."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
-from typing import Protocol
+from typing import Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from identification.arrays import FloatArray, IntArray, finite_floats
+from identification.arrays import ComplexArray, FloatArray, IntArray, finite_floats
 from identification.errors import RangeError, ShapeError, TooFewOperatingPointsError
+
+Numbers = TypeVar("Numbers", FloatArray, ComplexArray)
 
 
 @dataclass(frozen=True)
@@ -83,17 +85,21 @@ class ProductBasis:
 
 @dataclass(frozen=True)
 class ParameterDependence:
-    """How n coefficients depend on s scheduling variables; each coefficient may have its own basis.
+    """How n coefficients depend on s scheduling variables, each group of them with its own basis.
 
-        ζ_i(p) = Σ_j θ_{i,j} f_{i,j}(p),   ζ(p) = T(p) θ,   T(p): n × k,   k = Σ_i size_i      [Ghosh2018, (2), (3)]
+        ζ_i(p) = Σ_j θ_{g,j,i} f_{g,j}(p) for i in group g,   ζ(p) = T(p) θ,   T(p): n × k      [Ghosh2018, (2), (3)]
 
-    θ is ordered coefficient by coefficient: (θ_{1,0}, θ_{1,1}, …, θ_{n,·}).
+    A group is one coefficient, or all entries of a matrix: `entries` counts the coefficients of each, none given: one.
+    θ is ordered by group, function and entry: for groups of one, (θ_{1,0}, θ_{1,1}, …, θ_{n,·}).
     """
 
     variables: tuple[SchedulingVariable, ...]
     bases: tuple[ProductBasis, ...]
+    entries: tuple[int, ...] = ()
 
     def __post_init__(self) -> None:
+        if self.entries and len(self.entries) != len(self.bases):
+            raise ShapeError(f"{len(self.bases)} bases were given for {len(self.entries)} groups", "entries")
         for basis in self.bases:
             if len(basis.factors) != len(self.variables):
                 raise ShapeError(
@@ -105,12 +111,27 @@ class ParameterDependence:
     @property
     def size(self) -> int:
         """k, the number of entries of θ."""
-        return sum(self.sizes)
+        return self.parameters_of(self.coefficient_count)
+
+    @property
+    def coefficient_count(self) -> int:
+        """n, the number of entries of ζ."""
+        return sum(self.counts)
+
+    @property
+    def counts(self) -> tuple[int, ...]:
+        """Number of coefficients of each group."""
+        return self.entries or (1,) * len(self.bases)
 
     @property
     def sizes(self) -> tuple[int, ...]:
-        """Number of basis functions of each coefficient, (n,)."""
+        """Number of basis functions of each group."""
         return tuple(basis.size for basis in self.bases)
+
+    def parameters_of(self, coefficients: int) -> int:
+        """How many entries of θ the first coefficients, whole groups of them, have."""
+        ends = np.cumsum(self.counts)
+        return sum(size * e for size, e, end in zip(self.sizes, self.counts, ends, strict=True) if end <= coefficients)
 
     @property
     def needed_operating_points(self) -> int:
@@ -119,8 +140,10 @@ class ParameterDependence:
 
     def parameter_names(self, coefficient_names: Sequence[str]) -> tuple[str, ...]:
         """A name for each entry of θ, such as a1[0], a1[1], b0[0]."""
-        pairs = zip(coefficient_names, self.bases, strict=True)
-        return tuple(f"{name}[{label}]" for name, basis in pairs for label in basis.labels)
+        ends = np.cumsum(self.counts)
+        groups = [coefficient_names[end - count : end] for end, count in zip(ends, self.counts, strict=True)]
+        pairs = zip(groups, self.bases, strict=True)
+        return tuple(f"{name}[{label}]" for names, basis in pairs for label in basis.labels for name in names)
 
     def points(self, points: ArrayLike) -> FloatArray:
         """Operating points as (M, s); raises ShapeError or RangeError when they do not fit the variables."""
@@ -141,16 +164,42 @@ class ParameterDependence:
                 )
         return array
 
-    def matrix(self, points: ArrayLike) -> FloatArray:
-        """T(p) at the operating points (M, s), as (M, n, k)."""
-        p = self.points(points)
-        blocks = np.zeros((len(p), len(self.bases), self.size))
+    def coefficients(self, theta: FloatArray, points: ArrayLike) -> FloatArray:
+        """ζ(p) = T(p) θ at the operating points (M, s) for θ (k,), as (M, n)."""
+        p, start, first = self.points(points), 0, 0
+        zeta = np.empty((len(p), self.coefficient_count))
+        for functions, count in self._groups(p):
+            stop = start + functions.shape[1] * count
+            zeta[:, first : first + count] = functions @ theta[start:stop].reshape(-1, count)
+            start, first = stop, first + count
+        return zeta
+
+    def pulled(self, by_zeta: Numbers, points: ArrayLike) -> Numbers:
+        """Derivatives by ζ (M, …, n) as those by θ, by_zeta T(p), (M, …, k); of the first coefficients alone if fewer.
+
+        T(p), nearly all zeros, is not formed. Each parameter's derivatives lie together in memory.
+        """
+        p, start, first, given = self.points(points), 0, 0, by_zeta.shape[-1]
+        by_theta = np.empty((self.parameters_of(given), *by_zeta.shape[:-1]), dtype=by_zeta.dtype)
+        for functions, count in self._groups(p):
+            part = by_zeta[..., first : first + count]
+            for values in functions.T if first < given else ():
+                spread = values.reshape(-1, *(1,) * (by_zeta.ndim - 1))
+                np.multiply(part, spread, out=np.moveaxis(by_theta[start : start + count], 0, -1))
+                start += count
+            first += count
+        return np.moveaxis(by_theta, 0, -1)
+
+    def _groups(self, p: FloatArray) -> Iterator[tuple[FloatArray, int]]:
+        """The functions (M, J) of each group at checked points, and how many coefficients it has."""
         values = {basis: basis.evaluate(p, self.variables) for basis in dict.fromkeys(self.bases)}
-        start = 0
-        for i, basis in enumerate(self.bases):
-            blocks[:, i, start : start + basis.size] = values[basis]
-            start += basis.size
-        return blocks
+        return zip((values[basis] for basis in self.bases), self.counts, strict=True)
+
+    def matrix(self, points: ArrayLike) -> FloatArray:
+        """T(p) at the operating points (M, s), as (M, n, k): for fits over a few points, not along p(t)."""
+        n = self.coefficient_count
+        unit = np.broadcast_to(np.eye(n), (len(np.asarray(points)), n, n))
+        return self.pulled(unit, points)
 
     def require_identifiable(self, points: ArrayLike) -> None:
         """Raises TooFewOperatingPointsError unless the stacked T(p_m) has full column rank [Ghosh2018, Remark 2]."""

@@ -18,11 +18,10 @@ def sensitivity(model: LpvModel, points: ArrayLike, omega: FloatArray) -> Comple
 
     Re(a a*) is the information about θ_G that one unit of input energy Σ_t u(t)² gives [Ghosh2018, (7), (14)].
     """
-    transfer = model.dependence.matrix(points)
-    zeta = transfer @ model.theta
-    weighted = model.structure.plant_gradient(zeta, omega) / model.structure.noise_response(zeta, omega)[:, None, :]
-    plant_part = transfer[:, : model.structure.n_plant, : model.plant_size]
-    return np.asarray(np.swapaxes(weighted, 1, 2) @ plant_part / np.sqrt(model.noise_variance))
+    zeta = model.coefficients(points)
+    noise = np.sqrt(model.noise_variance) * model.structure.noise_response(zeta, omega)
+    weighted = model.structure.plant_gradient(zeta, omega) / noise[:, None, :]
+    return model.dependence.pulled(np.swapaxes(weighted, 1, 2), points)
 
 
 def noise_information(model: LpvModel, points: ArrayLike) -> FloatArray:

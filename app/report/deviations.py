@@ -26,9 +26,9 @@ class UncertainPoles:
 
 def poles_of(model: LpvModel, points: ArrayLike) -> UncertainPoles:
     """Along operating points (M, s)."""
-    transfer = model.dependence.matrix(points)
-    values, sensitivity = _sensitivity(model.structure, transfer @ model.theta)
-    return _uncertain(values, sensitivity @ transfer[:, : model.structure.n_a], model.covariance)
+    values, sensitivity = _sensitivity(model.structure, model.coefficients(points))
+    by_theta = model.dependence.pulled(sensitivity, points)
+    return _uncertain(values, by_theta, model.covariance[: by_theta.shape[-1], : by_theta.shape[-1]])
 
 
 def local_poles(model: LocalModel) -> UncertainPoles:

@@ -92,21 +92,17 @@ class ExtendedModel:
 
     def setting(self, points: ArrayLike) -> Setting:
         """ζ and its slope at the operating points (M, s)."""
-        dependence = self.base.dependence
-        p = dependence.points(points)
-        low = np.array([v.minimum for v in dependence.variables])
-        high = np.array([v.maximum for v in dependence.variables])
+        variables = self.base.dependence.variables
+        p = self.base.dependence.points(points)
+        low, high = np.array([(v.minimum, v.maximum) for v in variables]).T
         half = (high - low) / 2
-        transfer = dependence.matrix(p)
-        slopes = []
-        for s in range(p.shape[1]):
-            step = np.zeros(p.shape[1])
-            step[s] = SLOPE_STEP * half[s]
-            up, down = np.minimum(p + step, high), np.maximum(p - step, low)
-            change = (dependence.matrix(up) - dependence.matrix(down)) @ self.base.theta
-            slopes.append(change * (half[s] / (up - down)[:, s])[:, None])
-        slope = np.stack(slopes, axis=-1)[:, : self.base.structure.n_plant]
-        return Setting(self.base.structure, transfer @ self.base.theta, (p - low) / half - 1, transfer, slope)
+        steps = SLOPE_STEP * np.diag(half)[:, None]
+        up, down = np.minimum(p + steps, high), np.maximum(p - steps, low)
+        zeta, *ends = np.split(self.base.coefficients(np.concatenate([p, *up, *down])), 1 + 2 * len(half))
+        lengths = np.einsum("sms->sm", up - down) / half[:, None]
+        slopes = (np.array(ends[: len(half)]) - np.array(ends[len(half) :])) / lengths[..., None]
+        slope = np.moveaxis(slopes, 0, -1)[:, : self.base.structure.n_plant]
+        return Setting(self.base.structure, zeta, (p - low) / half - 1, slope)
 
     def respond(self, batch: Batch, start: ComplexArray | None = None, solve: Solver | None = None) -> Flow:
         """The steady signals of a batch; see `identification.places.simulate`."""

@@ -59,11 +59,10 @@ class Rows:
 
 def plant_tangents(model: ExtendedModel, rows: Rows, flows: Sequence[Flow]) -> FloatArray:
     """∂Ŷ/∂θ_G whitened, (k_G, R)."""
-    k, n = model.base.plant_size, model.base.structure.n_plant
     spectra = []
     for flow in flows:
-        change = np.swapaxes(flow.setting.transfer[:, :n, :k], 1, 2) @ flow.gradient
-        spectra.append(np.swapaxes(change * (flow.drive * flow.factor)[:, None, :], 0, 1))
+        by_zeta = np.swapaxes(flow.gradient * (flow.drive * flow.factor)[:, None, :], 1, 2)
+        spectra.append(np.moveaxis(model.base.dependence.pulled(by_zeta, flow.batch.points), -1, 0))
     return rows.whiten(spectra)
 
 

@@ -39,14 +39,13 @@ class FurtherParameter:
 class Setting:
     """What the parameters give at the operating points of a batch.
 
-    `zeta` (M, n); `points` (M, s) scaled to −1 … 1 over the range of the scheduling variables; `transfer` (M, n, k);
-    `zeta_slope` (M, n_plant, s): ∂ζ_G by the scaled scheduling variables.
+    `zeta` (M, n); `points` (M, s) scaled to −1 … 1 over the range of the scheduling variables; `zeta_slope`
+    (M, n_plant, s): ∂ζ_G by the scaled scheduling variables.
     """
 
     structure: RationalStructure
     zeta: FloatArray
     points: FloatArray
-    transfer: FloatArray
     zeta_slope: FloatArray
 
 

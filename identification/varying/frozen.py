@@ -15,7 +15,7 @@ from identification.extension.model import ExtendedModel, PlacedEffect
 from identification.models import LpvModel, RationalStructure
 from identification.outcome import Outcome
 from identification.places.linear import Coefficient
-from identification.scheduling import ParameterDependence, ProductBasis
+from identification.scheduling import Numbers, ParameterDependence, ProductBasis
 from identification.varying.affine_parameters import AffineSizes
 
 ROUNDS, BALANCED = 60, 1e-13
@@ -89,14 +89,27 @@ class ChartedDependence(ParameterDependence):
     chart: tuple[tuple[float, ...], ...] = ()
 
     @property
-    def sizes(self) -> tuple[int, ...]:
-        """All of δ belongs to G; it is counted with the first coefficient."""
-        return (len(self.chart[0]), *(0,) * (len(self.bases) - 1))
+    def size(self) -> int:
+        """That of δ."""
+        return len(self.chart[0])
 
     @property
     def needed_operating_points(self) -> int:
         """One for the constant and one for each variable."""
         return len(self.variables) + 1
+
+    def parameters_of(self, coefficients: int) -> int:
+        """All of δ."""
+        return self.size
+
+    def coefficients(self, theta: FloatArray, points: ArrayLike) -> FloatArray:
+        """T(p) Q δ."""
+        return np.asarray(self.matrix(points) @ theta)
+
+    def pulled(self, by_zeta: Numbers, points: ArrayLike) -> Numbers:
+        """by_zeta T(p) Q."""
+        spread = self.matrix(points)
+        return np.asarray(by_zeta @ spread.reshape(len(spread), *(1,) * (by_zeta.ndim - 3), *spread.shape[1:]))
 
     def parameter_names(self, coefficient_names: object) -> tuple[str, ...]:
         """δ1, δ2, …"""
@@ -186,7 +199,7 @@ def frozen(
     dependence = ChartedDependence(
         model.variables,
         (ProductBasis((Polynomial(0),) * len(model.variables)),) * (sizes.order + 1) ** 2,
-        tuple(tuple(map(float, row)) for row in chart),
+        chart=tuple(tuple(map(float, row)) for row in chart),
     )
     inner = chart.T @ _turning(sizes, basis)
     known = estimate.covariance

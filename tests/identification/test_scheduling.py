@@ -83,3 +83,22 @@ def test_how_many_points_are_needed():
     with pytest.raises(TooFewOperatingPointsError, match="placed"):
         tensor.require_identifiable([[0.0, 250.0], [2.0, 275.0], [4.0, 300.0], [6.0, 325.0]])
     tensor.require_identifiable([[0.0, 250.0], [0.0, 350.0], [8.0, 250.0], [8.0, 350.0]])
+
+
+def test_groups_give_what_the_matrix_gives() -> None:
+    """Two matrices of four and two entries, θ by group, function and entry, against T(p) written out."""
+    variables = (SchedulingVariable("v", "", 0.0, 1.0),)
+    bases = (ProductBasis((Polynomial(1),)), ProductBasis((Polynomial(0),)))
+    dependence = ParameterDependence(variables, bases, entries=(4, 2))
+    theta, p = np.arange(10.0), 0.3
+    assert dependence.size == 10
+    assert np.allclose(dependence.coefficients(theta, [[p]])[0], [*(theta[:4] + p * theta[4:8]), 8.0, 9.0])
+    transfer = np.block([[np.eye(4), p * np.eye(4), np.zeros((4, 2))], [np.zeros((2, 8)), np.eye(2)]])
+    assert np.allclose(dependence.matrix([[p]])[0], transfer)
+    gradient = np.random.default_rng(0).standard_normal((1, 3, 5, 6)) * (1 + 2j)
+    assert np.allclose(dependence.pulled(gradient, [[p]]), gradient @ transfer)
+    assert np.allclose(dependence.pulled(gradient[..., :4], [[p]]), gradient[..., :4] @ transfer[:4, :8])
+    names = dependence.parameter_names([*"abcdef"])
+    assert names[4:9:2] == ("a[1]", "c[1]", "e[0]")
+    with pytest.raises(ShapeError):
+        ParameterDependence(variables, bases, entries=(4,))
