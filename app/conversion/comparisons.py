@@ -35,6 +35,7 @@ def part_document(
         data=data,
         noise_known=found.overall is not None,
         lack_of_fit=_test(found.overall),
+        refitted=_test(found.refitted),
         by_point=[PointTest(operating_point=point.tolist(), test=test) for point, test in by_point],
         by_band=_bands(found, batches),
         by_line_class=test_documents(found.by_class),
@@ -60,14 +61,16 @@ def _disturbance(experiment_id: str, found: Disturbance) -> DisturbanceDocument:
 
 def compared_experiments(data: Data, found: Comparison, experiments: Sequence[Experiment]) -> list[ComparedExperiment]:
     """Fit in per cent of the experiments of one part, in the order given."""
+    brought = [None] * len(experiments) if found.refit_percent is None else found.refit_percent.tolist()
     return [
         ComparedExperiment(
             experiment_id=experiment.id,
             operating_point=experiment.held_at,
             data=data,
             fit_percent=finite_or_none(float(percent)),
+            refit_percent=None if refit is None else finite_or_none(refit),
         )
-        for experiment, percent in zip(experiments, found.fit_percent, strict=True)
+        for experiment, percent, refit in zip(experiments, found.fit_percent, brought, strict=True)
     ]
 
 

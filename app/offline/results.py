@@ -105,14 +105,16 @@ def write_comparison(folder: Path, compared: "Compared") -> None:
     found = compared.document
     _write(folder, "comparison.json", found)
     (folder / "comparison.npz").write_bytes(npz_file.write(dict(compared.arrays)))
-    fits = Table("experiment", "operating point", "data", "fit %", title="comparison")
+    fits = Table("experiment", "operating point", "data", "fit %", "after a refit %", title="comparison")
     for one in found.experiments:
         point = ", ".join(f"{value:g}" for value in one.operating_point or ()) or "varying"
-        fits.add_row(one.experiment_id, point, one.data, "–" if one.fit_percent is None else f"{one.fit_percent:.2f}")
+        percents = ("–" if value is None else f"{value:.2f}" for value in (one.fit_percent, one.refit_percent))
+        fits.add_row(one.experiment_id, point, one.data, *percents)
     Console().print(fits)
     table = Table("lack of fit", "χ²", "degrees of freedom", "p-value")
     for part in found.parts:
         named: list[tuple[str, TestDocument | None]] = [(part.data, part.lack_of_fit)]
+        named += [(f"{part.data}, after a refit", part.refitted)]
         named += [(f"{part.data}, {one.name} lines", one) for one in part.by_line_class]
         for name, test in named:
             if test is not None and test.statistic is not None:

@@ -35,6 +35,9 @@ class ComparedExperiment(CamelModel):
         description="100 (1 − ‖y − ŷ‖/‖y‖) at the excited lines, null for zero output; where the scheduling varied the"
         " best fit rate over time"
     )
+    refit_percent: Double | None = Field(
+        default=None, description="what that would be after a refit to the fitted experiments; null if held out"
+    )
     vaf_percent: Double | None = Field(
         default=None, description="variance accounted for over time, where the scheduling varied"
     )
@@ -77,9 +80,9 @@ class NoteDocument(CamelModel):
 class ComparisonPart(CamelModel):
     """Tests of the experiments that were fitted, or of those that were held out, or of one with varying scheduling.
 
-    Fitted: the model is fitted once more to these very data and its parameters are taken off the degrees of freedom.
-    Held out: the uncertainty of the model is added to that of the noise. All tests are null or empty where the size of
-    the noise is not known.
+    The model is held against the data as it is. Fitted: its parameters are taken off the degrees of freedom, and
+    what a refit to these data would bring is told beside it. Held out: the uncertainty of the model is added to
+    that of the noise. All tests are null or empty where the size of the noise is not known.
     """
 
     data: Data
@@ -89,13 +92,16 @@ class ComparisonPart(CamelModel):
     experiment_id: str | None = Field(default=None, description="that record")
     noise_known: bool = Field(description="whether the size of the noise is known from variances or periods")
     lack_of_fit: TestDocument | None = Field(description="the whitened residuals against the noise")
+    refitted: TestDocument | None = Field(
+        default=None, description="what that would be after a refit to these experiments; null if held out"
+    )
     by_point: list[PointTest]
     by_band: list[BandTest] = Field(description="below, in six bands over, and above the excited frequencies")
     by_line_class: list[TestDocument] = Field(
         description="excited lines show linear misfit, unexcited odd and even ones odd and even nonlinearity"
     )
     dependence: TestDocument | None = Field(
-        description="whether one LTI model per operating point fits better than the dependence on p; null if held out"
+        description="whether one LTI model per operating point would fit better than a refit; null if held out"
     )
     dynamics: TestDocument | None = Field(description="whether even those do not fit; null if held out")
     between_harmonics: list[TestDocument] = Field(description="disturbances with frequencies of their own")

@@ -45,9 +45,10 @@ class MisfitMap:
 class Comparison:
     """What a comparison found: maps; tests overall, by operating point, by band and by line class; fit of each record.
 
-    `tests` are empty where the size of the noise is not known. `dependence` and `dynamics` split the lack of fit: the
-    first asks whether one LTI model per operating point would fit better than the dependence on p, the second whether
-    even those do not fit. `notes`: what is to be said of measurements, by their place in the list.
+    `tests` are empty where the size of the noise is not known. `refitted` and `refit_percent` (experiments,): what a
+    refit to these data would bring, None for held-out ones. `dependence` and `dynamics` split the lack of fit of such a
+    refit: the first asks whether one LTI model per operating point would fit better than the dependence on p, the
+    second whether even those do not fit. `notes`: what is to be said of measurements, by their place in the list.
     `fit_percent` (experiments,) 100 (1 − ‖y − ŷ‖/‖y − ȳ‖) at the excited lines.
     """
 
@@ -61,6 +62,8 @@ class Comparison:
     between: tuple[TestResult, ...]
     disturbances: tuple[tuple[int, Disturbance], ...]
     fit_percent: FloatArray
+    refitted: TestResult | None = None
+    refit_percent: FloatArray | None = None
     notes: tuple[tuple[int, str], ...] = ()
 
 
@@ -91,15 +94,17 @@ class _Judge:
 
 
 def compare(model: ExtendedModel, batches: Sequence[Batch], fitted: bool = True) -> Comparison:
-    """Hold a model against batches of measurements.
+    """Hold a model, as it is, against batches of measurements.
 
-    `fitted`: the model was fitted to these very data; it is then fitted once more with the weights used here, and the
-    fitted parameters are taken off the degrees of freedom. Otherwise the model's own uncertainty is added to that of
-    the noise: r has the covariance I + J P Jᵀ. Raises MisuseError for a model without (finite) covariance then.
+    `fitted`: the model was fitted to these very data; as many degrees of freedom as its parameters are taken off, and
+    what a refit would bring is told beside. Otherwise the model's own uncertainty is added to that of the noise: r has
+    the covariance I + J P Jᵀ. Raises MisuseError for a model without (finite) covariance then.
     """
     require_matching(model.base, batches)
     rows = Rows(tuple(batches))
-    flows, judge = _fitted(fit(model, rows)) if fitted else _held_out(model, rows)
+    flows, judge = _fitted(model, rows) if fitted else _held_out(model, rows)
+    refit = fit(model, rows) if fitted else None
+    brought = None if refit is None else _fit_percent(batches, refit.flows)
     z = judge.residual
     if judge.covariance is not None:
         z = z / np.sqrt(1 + np.einsum("kr,kl,lr->r", judge.tangents, judge.covariance, judge.tangents))
@@ -109,10 +114,10 @@ def compare(model: ExtendedModel, batches: Sequence[Batch], fitted: bool = True)
     disturbances = _disturbances(batches)
     notes = tuple(sorted(note for batch in batches for note in batch.notes))
     if not rows.scaled:
-        return Comparison(maps, None, (), (), (), None, None, between, disturbances, percent, notes)
+        return Comparison(maps, None, (), (), (), None, None, between, disturbances, percent, None, brought, notes)
     everything = np.ones(len(z), dtype=np.bool_)
     overall = judge.test("lack of fit", everything)
-    dependence, dynamics = _split(rows, flows, judge, overall)
+    refitted, dependence, dynamics = (None, None, None) if refit is None else _split(refit)
     return Comparison(
         maps,
         overall,
@@ -124,6 +129,8 @@ def compare(model: ExtendedModel, batches: Sequence[Batch], fitted: bool = True)
         between,
         disturbances,
         percent,
+        refitted,
+        brought,
         notes,
     )
 
@@ -147,14 +154,23 @@ def _compared(rows: Rows) -> BoolArray:
     return np.concatenate([batch.compared for batch in rows.batches])
 
 
-def _fitted(found: Fit) -> tuple[tuple[Flow, ...], _Judge]:
-    leverage = np.sum(orthonormal(found.tangents.T) ** 2, axis=1)
-    return found.flows, _Judge(found.rows, found.residual, found.tangents, None, _compared(found.rows), leverage)
+def _fitted(model: ExtendedModel, rows: Rows) -> tuple[tuple[Flow, ...], _Judge]:
+    flows = tuple(model.respond(batch) for batch in rows.batches)
+    tangents = _tangents(model, rows, flows)
+    return flows, _Judge(rows, rows.residual(flows), tangents, None, _compared(rows), _leverage(tangents))
+
+
+def _leverage(tangents: FloatArray) -> FloatArray:
+    return np.asarray(np.sum(orthonormal(tangents.T) ** 2, axis=1))
+
+
+def _tangents(model: ExtendedModel, rows: Rows, flows: tuple[Flow, ...]) -> FloatArray:
+    every = [plant_tangents(model, rows, flows), *(effect_tangents(one, rows, flows) for one in model.effects)]
+    return np.concatenate(every)
 
 
 def _held_out(model: ExtendedModel, rows: Rows) -> tuple[tuple[Flow, ...], _Judge]:
     flows = tuple(model.respond(batch) for batch in rows.batches)
-    tangents = [plant_tangents(model, rows, flows), *(effect_tangents(one, rows, flows) for one in model.effects)]
     covariance = _covariance(model)
     start = model.base.plant_size
     for one in model.effects:
@@ -164,7 +180,7 @@ def _held_out(model: ExtendedModel, rows: Rows) -> tuple[tuple[Flow, ...], _Judg
         start = stop
     residual = rows.residual(flows)
     nothing = np.zeros(len(residual))
-    return flows, _Judge(rows, residual, np.concatenate(tangents), covariance, _compared(rows), nothing)
+    return flows, _Judge(rows, residual, _tangents(model, rows, flows), covariance, _compared(rows), nothing)
 
 
 def _covariance(model: ExtendedModel) -> FloatArray:
@@ -236,34 +252,31 @@ def _classes(rows: Rows) -> list[tuple[str, BoolArray]]:
     return found
 
 
-def _split(
-    rows: Rows, flows: Sequence[Flow], judge: _Judge, overall: TestResult
-) -> tuple[TestResult | None, TestResult | None]:
-    """Likelihood ratio of one LTI model per operating point against the LPV model, to second order of the likelihood.
+def _split(found: Fit) -> tuple[TestResult, TestResult, TestResult]:
+    """Lack of fit of a refit; likelihood ratio of one LTI model per operating point against it; what those leave.
 
     Σ_m ‖Q_mᵀ r_m‖² ~ χ²(Σ rank J_m − k),  the rest ~ χ²(R − Σ rank J_m)      [Ghosh2018, Remark 3]
     """
-    if judge.covariance is not None:
-        return None, None
+    rows = found.rows
     explained, ranks = 0.0, 0
-    local = rows.whiten([np.swapaxes(f.gradient * (f.drive * f.factor)[:, None, :], 0, 1) for f in flows])
+    local = rows.whiten([np.swapaxes(f.gradient * (f.drive * f.factor)[:, None, :], 0, 1) for f in found.flows])
     for _, chosen in _points(rows):
         basis = orthonormal(local[:, chosen].T)
-        explained += float(np.sum((basis.T @ judge.residual[chosen]) ** 2))
+        explained += float(np.sum((basis.T @ found.residual[chosen]) ** 2))
         ranks += basis.shape[1]
-    noise = rows.noise_freedom
-    freedom = ranks - rows_rank(judge)
-    left = lack_of_fit("one LTI model per operating point", overall.statistic - explained, rows.count - ranks, noise)
+    noise, energy = rows.noise_freedom, float(found.residual @ found.residual)
+    rank = round(float(_leverage(found.tangents).sum()))
+    refitted = lack_of_fit("lack of fit after a refit", energy, rows.count - rank, noise)
+    left = lack_of_fit("one LTI model per operating point", energy - explained, rows.count - ranks, noise)
+    return refitted, _dependence(explained, ranks - rank, left, noise), left
+
+
+def _dependence(explained: float, freedom: int, left: TestResult, noise: float) -> TestResult:
     name = "dependence on the operating point"
     if freedom < 1:
-        return TestResult(name, 0.0, 0.0, 1.0), left
+        return TestResult(name, 0.0, 0.0, 1.0)
     p = lack_of_fit(name, explained, freedom, noise).p_value
     if left.degrees_of_freedom > 0 and left.p_value < 0.01:
         ratio = explained / freedom / (left.statistic / left.degrees_of_freedom)
         p = float(fdtrc(freedom, left.degrees_of_freedom, ratio))
-    return TestResult(name, explained, float(freedom), p), left
-
-
-def rows_rank(judge: _Judge) -> int:
-    """How many directions the fitted parameters take up."""
-    return round(float(judge.leverage.sum()))
+    return TestResult(name, explained, float(freedom), p)

@@ -83,11 +83,17 @@ def _fit_table(chain: Chain, compared: Compared) -> Table:
         (
             chain.labels.get(one.experiment_id, one.experiment_id),
             "held out" if one.data == "heldOut" else "fitted",
-            "–" if one.fit_percent is None else f"{significant(one.fit_percent, 4)} %",
+            _percent(one.fit_percent),
+            _percent(one.refit_percent),
         )
         for one in compared.document.experiments
     )
-    return Table(("experiment", "data", "fit 100 (1 − ‖y − ŷ‖/‖y‖)"), rows, text_columns=2)
+    heads = ("experiment", "data", "fit 100 (1 − ‖y − ŷ‖/‖y‖)", "after a refit it would be")
+    return Table(heads, rows, text_columns=2)
+
+
+def _percent(value: float | None) -> str:
+    return "–" if value is None else f"{significant(value, 4)} %"
 
 
 def diagnosis_section(chain: Chain, diagnosis: Diagnosis, number: int) -> Section:

@@ -57,7 +57,8 @@ def overall_table(parts: Sequence[ComparisonPart]) -> Table:
     """The tests of the whole, and whether it is the dynamics or their dependence on the operating point."""
     rows = []
     for part in parts:
-        tests = [("lack of fit", part.lack_of_fit), ("dependence on the operating point", part.dependence)]
+        tests = [("lack of fit", part.lack_of_fit), ("lack of fit after a refit", part.refitted)]
+        tests += [("dependence on the operating point", part.dependence)]
         tests += [("dynamics at each operating point", part.dynamics)]
         rows += [(name, NAMES[part.data], *_numbers(test)) for name, test in tests if test is not None]
     heads = ("test", "data", "χ²", "degrees of freedom", "χ² per degree", "p-value")

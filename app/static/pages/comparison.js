@@ -67,6 +67,6 @@ function drawTests({ parts }, titles, found) {
 
 function drawExperiments({ experiments }, titles, variables) {
   const rows = experiments.map((one) => [h("a", { href: at(`experiments/${one.experimentId}`) }, titles.get(one.experimentId) ?? one.experimentId),
-    pointText(one.operatingPoint, variables), DATA[one.data], one.fitPercent === null ? "–" : `${significant(one.fitPercent, 4)} %`]);
-  replace(byId("experiments"), table({ caption: "Fit: 100 (1 − ‖y − ŷ‖/‖y‖) at the excited lines", columns: ["experiment", "operating point", "data", "fit"], rows, textColumns: 3 }));
+    pointText(one.operatingPoint, variables), DATA[one.data], ...[one.fitPercent, one.refitPercent].map((value) => (value == null ? "–" : `${significant(value, 4)} %`))]);
+  replace(byId("experiments"), table({ caption: "Fit: 100 (1 − ‖y − ŷ‖/‖y‖) at the excited lines", columns: ["experiment", "operating point", "data", "fit", "after a refit it would be"], rows, textColumns: 3 }));
 }

@@ -44,6 +44,19 @@ def test_nothing_fails_when_nothing_is_missing():
     assert found.fit_percent.min() > 98
 
 
+def test_a_comparison_shows_the_model_as_it_is_and_what_a_refit_would_bring_beside_it():
+    """Half the gain: 50 % fit on the very data that it is said to be fitted to, and all is well after a refit."""
+    halved = replace(MODEL, base=replace(MODEL.base, theta=MODEL.base.theta * np.array([1, 1, 1, 0.5])))
+    found = compare(halved, batches(1))
+    assert found.fit_percent == pytest.approx(compare(halved, batches(1), fitted=False).fit_percent)
+    assert found.fit_percent == pytest.approx(50, abs=2)
+    assert found.refit_percent.min() > 98
+    assert found.overall.p_value < 1e-9 < 1e-3 < found.refitted.p_value
+    assert found.dependence.p_value > 1e-3
+    seen = found.maps[0].responses
+    assert abs(seen.modelled[seen.shown]) == pytest.approx(0.5 * abs(seen.measured[seen.shown]), rel=0.2)
+
+
 def test_degrees_of_freedom_count_what_was_fitted_once():
     """Four parameters of θ; three coefficients at each of five operating points."""
     data = batches(1)

@@ -74,7 +74,7 @@ function pointTrace(part, tests, categories, i) {
 // What the tests of the whole say.
 export function overallTable(parts) {
   const rows = parts.flatMap((part) => [
-    ["is there anything but noise?", part.lackOfFit], ["is the dependence on the operating point wrong?", part.dependence],
+    ["is there anything but noise?", part.lackOfFit], ["would there be after a refit?", part.refitted], ["is the dependence on the operating point wrong?", part.dependence],
     ["are the dynamics wrong even at one operating point?", part.dynamics],
     ...part.simulationErrors.map((test) => [`is the simulation error suspicious? (${test.name})`, test]),
     ...part.betweenHarmonics.length ? [["is there a disturbance of its own frequency?", strongest(part.betweenHarmonics)]] : [],

@@ -14,5 +14,7 @@ export function comparisonVerdict(parts) {
   const detail = tests.map((part) => `${nameOf(part)}: ${significant(ratio(part.lackOfFit))} (p-value ${probability(part.lackOfFit.pValue)})`).join("; ");
   if (!failing.length) return { kind: "success", text: `The model explains what was measured: what is left is noise. χ² per degree of freedom on ${detail}.` };
   const sure = failing.some((part) => part.lackOfFit.pValue < 1e-3);
-  return { kind: "warning", text: `${sure ? "The model fails: noise does not explain what is left" : "Noise alone hardly explains what is left"} on ${failing.map(nameOf).join(" and ")}. χ² per degree of freedom on ${detail}.` };
+  const refits = failing.every((part) => part.refitted && part.refitted.pValue >= DOUBTFUL);
+  const hint = refits ? " A refit of its parameters would explain them: fit it once more." : "";
+  return { kind: "warning", text: `${sure ? "The model fails: noise does not explain what is left" : "Noise alone hardly explains what is left"} on ${failing.map(nameOf).join(" and ")}. χ² per degree of freedom on ${detail}.${hint}` };
 }
