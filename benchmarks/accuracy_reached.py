@@ -23,7 +23,7 @@ from benchmarks.ghosh_example import ACCEPTED, DEPENDENCE, DEVIATIONS, GRID, NOI
 from benchmarks.processes import spread
 from identification.arrays import FloatArray
 from identification.lpv.joint_likelihood import JointLikelihood
-from identification.models import LpvModel
+from identification.models.model import Model
 from oed.design import Design, design
 from oed.problem import DesignProblem
 from oed.realisation import realise
@@ -42,7 +42,7 @@ CASES: dict[str, tuple[SpectrumFamily, str]] = {
 
 def designed(family: SpectrumFamily) -> Design:
     """The design from the true parameters."""
-    model = LpvModel(STRUCTURE, DEPENDENCE, THETA, np.zeros((6, 6)), NOISE_VARIANCE)
+    model = Model(STRUCTURE, DEPENDENCE, THETA, np.zeros((6, 6)), NOISE_VARIANCE)
     return design(DesignProblem(model, GRID, (ParameterDeviation(DEVIATIONS),), family, SAMPLES))
 
 

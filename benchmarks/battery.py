@@ -20,11 +20,11 @@ from identification.comparison.gather import gather
 from identification.diagnosis.staircase import Step, staircase
 from identification.effects.library import library
 from identification.estimates import LocalEstimate, LpvEstimate
-from identification.extension.model import ExtendedModel
 from identification.lpv.generalised_least_squares import GeneralisedLeastSquares
 from identification.lpv.joint_likelihood import JointLikelihood
 from identification.lti.rational_fit import RationalFit, relative_error
-from identification.models import LocalModel, LpvModel, RationalStructure
+from identification.models.model import LocalModel, Model
+from identification.models.rational import RationalStructure
 from identification.scheduling import ParameterDependence, ProductBasis, SchedulingVariable
 from identification.signals import FrequencyResponse
 
@@ -101,13 +101,13 @@ def study(data: list[FrequencyResponse], degree: int) -> list[dict[str, Any]]:
     return rows
 
 
-def circuit(data: list[FrequencyResponse], degree: int) -> ExtendedModel:
+def circuit(data: list[FrequencyResponse], degree: int) -> Model:
     """A resistor and one RC arc, polynomials in the state of charge through the local fits."""
     local = [FIT.estimate(ONE_ARC, one).model.zeta for one in data]
     how = ParameterDependence((CHARGE,), (ProductBasis((Polynomial(degree),)),) * ONE_ARC.size)
     stacked = how.matrix([one.operating_point for one in data]).reshape(-1, how.size)
     theta = np.linalg.lstsq(stacked, np.concatenate(local), rcond=None)[0]
-    return ExtendedModel(LpvModel(ONE_ARC, how, theta, np.eye(how.size), 1.0))
+    return Model(ONE_ARC, how, theta, np.eye(how.size), 1.0)
 
 
 def story(data: list[FrequencyResponse], degree: int, amplitude_degree: int, effects: int = 3) -> tuple[Step, ...]:

@@ -19,7 +19,7 @@ from identification.lpv.generalised_least_squares import GeneralisedLeastSquares
 from identification.lpv.joint_likelihood import JointLikelihood
 from identification.lti.prediction_error import PredictionError
 from identification.lti.rational_fit import RationalFit
-from identification.models import RationalStructure
+from identification.models.rational import RationalStructure
 from identification.signals import FrequencyResponse, TimeRecord
 from identification.simulation import simulate
 

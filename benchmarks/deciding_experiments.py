@@ -25,7 +25,6 @@ from identification.comparison.batch import Batch
 from identification.comparison.gather import gather
 from identification.diagnosis.diagnose import Diagnosis, diagnose
 from identification.effects.library import library
-from identification.extension.model import ExtendedModel
 from identification.signals import TimeRecord
 from oed.budget import within_energy
 from oed.hypothesis import sample_noise_variance
@@ -112,9 +111,9 @@ def family_of(pair: Pair) -> Multisines:
 def designed(pair: Pair, found: Diagnosis, batches: tuple[Batch, ...], budget: float) -> list[Played]:
     """The experiments that tell the likeliest effect from the others best, both ways, after what is known."""
     likeliest, *others = dict.fromkeys(one.score.candidate.effect.kind for one in found.announced)
-    model = replace(found.base.model.base, noise_variance=sample_noise_variance(batches[0]))
+    model = replace(found.base.model, noise_variance=sample_noise_variance(batches[0]))
     problem = DesignProblem(
-        ExtendedModel(model),
+        model,
         POINTS[:, None],
         tuple(EffectDiscrimination(likeliest, other) for other in others[:MOST_RIVALS]),
         family_of(pair),

@@ -9,14 +9,14 @@ import numpy as np
 
 from benchmarks.command import command_line, timed, write_json
 from benchmarks.ghosh_example import DEPENDENCE, DEVIATIONS, GRID, NOISE_VARIANCE, STRUCTURE, THETA
-from identification.models import LpvModel
+from identification.models.model import Model
 from oed.design import design
 from oed.direct_lmi import direct_design
 from oed.problem import DesignProblem
 from oed.spectra.fir import FirSpectra
 from oed.targets.parameter_deviation import ParameterDeviation
 
-MODEL = LpvModel(STRUCTURE, DEPENDENCE, THETA, np.zeros((6, 6)), NOISE_VARIANCE)
+MODEL = Model(STRUCTURE, DEPENDENCE, THETA, np.zeros((6, 6)), NOISE_VARIANCE)
 
 
 def main() -> None:

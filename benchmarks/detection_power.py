@@ -25,7 +25,6 @@ from identification.diagnosis.scores import score_tests
 from identification.diagnosis.signatures import candidates
 from identification.effects.cubic_stiffness import CubicStiffness
 from identification.extension.fit import fit
-from identification.extension.model import ExtendedModel
 from identification.extension.rows import Rows
 from oed.decisions import ErrorRates
 from oed.design import Design, design
@@ -38,7 +37,7 @@ SHARES = (0.0, 0.5, 1.0, 1.5)
 POINTS = np.linspace(-1, 1, 5)[:, None]
 FAMILY = Multisines(PERIOD, levels=(2.0, 4.0, 8.0))
 MOST_PERIODS = 64
-KNOWN = ExtendedModel(replace(MODEL.base, noise_variance=SIGMA**2))
+KNOWN = replace(MODEL, noise_variance=SIGMA**2)
 
 
 def problem(size: float = SIZE) -> DesignProblem:

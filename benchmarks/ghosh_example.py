@@ -4,7 +4,7 @@ import numpy as np
 
 from identification.arrays import FloatArray
 from identification.bases.polynomial import Polynomial
-from identification.models import RationalStructure
+from identification.models.rational import RationalStructure
 from identification.scheduling import ParameterDependence, ProductBasis, SchedulingVariable
 from identification.signals import TimeRecord
 from identification.simulation import simulate

@@ -19,9 +19,9 @@ from identification.bases.polynomial import Polynomial
 from identification.comparison.gather import gather
 from identification.diagnosis.staircase import Step, staircase
 from identification.effects.library import library
-from identification.extension.model import ExtendedModel
 from identification.extension.response import linear_response
-from identification.models import LpvModel, RationalStructure
+from identification.models.model import Model
+from identification.models.rational import RationalStructure
 from identification.scheduling import ParameterDependence, ProductBasis, SchedulingVariable
 from identification.signals import FrequencyResponse
 
@@ -61,12 +61,12 @@ def _spectra(signal: np.ndarray) -> ComplexArray:
     return np.asarray(np.fft.rfft(periods) / PERIOD)
 
 
-def rigid_body(data: FrequencyResponse) -> ExtendedModel:
+def rigid_body(data: FrequencyResponse) -> Model:
     """θ = b/(s² + a₁ s + a₂) from the slope of the response."""
     structure = RationalStructure(2, 0, frequency_scale=2 * np.pi * 50)
     gain = np.median(abs(data.response) * data.frequencies**2) / structure.frequency_scale**2
     dependence = ParameterDependence((STILL,), (ProductBasis((Polynomial(0),)),) * 3)
-    return ExtendedModel(LpvModel(structure, dependence, np.array([0.02, 0.02, gain]), np.eye(3), 1.0))
+    return Model(structure, dependence, np.array([0.02, 0.02, gain]), np.eye(3), 1.0)
 
 
 def story(data: FrequencyResponse, effects: int = 2) -> tuple[Step, ...]:
@@ -74,7 +74,7 @@ def story(data: FrequencyResponse, effects: int = 2) -> tuple[Step, ...]:
     return staircase(rigid_body(data), gather([data]), effects=library("mechanical"), largest=effects)
 
 
-def line_classes(spectra: Spectra, model: ExtendedModel) -> list[dict[str, Any]]:
+def line_classes(spectra: Spectra, model: Model) -> list[dict[str, Any]]:
     """Root mean square over the lines of each class in the band, in A at the input.
 
     V_k = mean over the periods of (Y − G U)/G,   G that of the model; deviations from how the periods differ

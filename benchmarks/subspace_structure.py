@@ -18,7 +18,7 @@ from examples.lightly_damped_structure import SAMPLE_TIME, response, structure
 from identification.arrays import ComplexArray, FloatArray
 from identification.least_squares import levenberg_marquardt
 from identification.likelihood import response_errors
-from identification.models import RationalStructure
+from identification.models.rational import RationalStructure
 from identification.rational_start import levy
 from identification.signals import FrequencyResponse
 from identification.subspace.equidistant_subspace import EquidistantSubspace

@@ -18,7 +18,7 @@ from identification.estimates import LpvEstimate
 from identification.lpv.generalised_least_squares import GeneralisedLeastSquares
 from identification.lpv.joint_likelihood import JointLikelihood
 from identification.lti.prediction_error import PredictionError
-from identification.models import LpvModel
+from identification.models.model import Model
 from identification.signals import TimeRecord
 from oed.design import Design, design
 from oed.problem import DesignProblem
@@ -63,7 +63,7 @@ def two_stages(seed: np.random.SeedSequence) -> Run:
     return _described(found, _two_step(records, first), _joint(records, first), seconds)
 
 
-def _problem(first: LpvModel) -> DesignProblem:
+def _problem(first: Model) -> DesignProblem:
     return DesignProblem(
         model=first,
         points=GRID,
@@ -74,13 +74,13 @@ def _problem(first: LpvModel) -> DesignProblem:
     )
 
 
-def _two_step(records: list[TimeRecord], prior: LpvModel | None) -> LpvEstimate:
+def _two_step(records: list[TimeRecord], prior: Model | None) -> LpvEstimate:
     estimator = PredictionError("zero")
     local = [estimator.estimate(STRUCTURE, record) for record in records]
     return GeneralisedLeastSquares().estimate(STRUCTURE, DEPENDENCE, records, local, prior)
 
 
-def _joint(records: list[TimeRecord], prior: LpvModel) -> LpvEstimate:
+def _joint(records: list[TimeRecord], prior: Model) -> LpvEstimate:
     return JointLikelihood("zero").estimate(STRUCTURE, DEPENDENCE, records, prior=prior)
 
 

@@ -19,8 +19,8 @@ from identification.bases.polynomial import Polynomial
 from identification.comparison.compare import compare
 from identification.comparison.gather import gather
 from identification.diagnosis.staircase import conclusion, staircase
-from identification.extension.model import ExtendedModel
-from identification.models import LpvModel, RationalStructure
+from identification.models.model import Model
+from identification.models.rational import RationalStructure
 from identification.scheduling import ParameterDependence, ProductBasis, SchedulingVariable
 
 # The model: a stage whose stiffness a2 is affine in its position, x = jω/60.
@@ -28,7 +28,7 @@ position = SchedulingVariable("position", "m", 0.0, 0.6)
 degrees = {"a1": 0, "a2": 1, "b0": 0}
 dependence = ParameterDependence((position,), tuple(ProductBasis((Polynomial(n),)) for n in degrees.values()))
 start = np.array([0.2, 1.7, -1.5, 0.19])
-guess = LpvModel(RationalStructure(2, 0, frequency_scale=60.0), dependence, start, np.zeros((4, 4)), 1.0)
+guess = Model(RationalStructure(2, 0, frequency_scale=60.0), dependence, start, np.zeros((4, 4)), 1.0)
 axes = Axes((position,), "force", "N", "deflection", "mm")
 
 
@@ -37,7 +37,7 @@ def main(path: Path | None) -> None:
     campaign = first_campaign(Stage(EFFECTS["coulomb_friction"]), np.random.default_rng(1))
     fitted, held_out = gather(campaign.fitted), gather(campaign.held_out)
 
-    steps = staircase(ExtendedModel(guess), fitted, held_out)
+    steps = staircase(guess, fitted, held_out)
     for step in steps:
         names = [one.effect.title for one in step.model.effects] or ["no effects"]
         print(f"{', '.join(names)}: error {step.error:.4f}, held out {step.held_out_error:.4f}")

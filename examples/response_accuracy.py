@@ -7,7 +7,8 @@ import numpy as np
 
 from identification.bases.chebyshev import Chebyshev
 from identification.confidence import gain_and_phase
-from identification.models import LpvModel, RationalStructure
+from identification.models.model import Model
+from identification.models.rational import RationalStructure
 from identification.scheduling import ParameterDependence, ProductBasis, SchedulingVariable
 from oed.design import design
 from oed.problem import DesignProblem
@@ -26,7 +27,7 @@ SAMPLES = 2048
 
 
 def main() -> None:
-    prior = LpvModel(structure, dependence, theta, np.zeros((6, 6)), noise_variance=1e-4)
+    prior = Model(structure, dependence, theta, np.zeros((6, 6)), noise_variance=1e-4)
     loads = np.linspace(0.0, 5.0, 11)[:, None]
     accurate = ResponseDeviation(
         operating_points=((0.0,), (2.5,), (5.0,)),
@@ -45,7 +46,7 @@ def main() -> None:
         lines = ", ".join(f"{omega:.1f}" for omega in experiment.spectrum.frequencies)
         print(f"  {place}: lines at {lines} rad/s, crest factor {signal.crest_factor:.2f}")
 
-    expected = LpvModel(structure, dependence, theta, found.expected_covariance, prior.noise_variance)
+    expected = Model(structure, dependence, theta, found.expected_covariance, prior.noise_variance)
     omega = np.geomspace(20.0, 200.0, 200)
     for point in accurate.operating_points:
         response = expected.frequency_response([point], omega)[0]

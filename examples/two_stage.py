@@ -9,7 +9,7 @@ from identification.bases.polynomial import Polynomial
 from identification.lpv.generalised_least_squares import GeneralisedLeastSquares
 from identification.lpv.joint_likelihood import JointLikelihood
 from identification.lti.prediction_error import PredictionError
-from identification.models import RationalStructure
+from identification.models.rational import RationalStructure
 from identification.scheduling import ParameterDependence, ProductBasis, SchedulingVariable
 from identification.signals import TimeRecord
 from identification.simulation import simulate

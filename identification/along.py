@@ -9,7 +9,7 @@ from identification.affine_state_space import propagate
 from identification.arrays import FloatArray
 from identification.confidence import covariance_root
 from identification.errors import MisuseError, RangeError
-from identification.models import LpvModel
+from identification.models.model import Model
 from identification.parameter_varying import ParameterVaryingStateSpace
 from identification.scheduling import ParameterDependence
 
@@ -35,7 +35,7 @@ def simulate_affine(estimate: AffineEstimate, input: FloatArray, scheduling: Flo
 
 
 def simulate_rational(
-    model: LpvModel, input: FloatArray, scheduling: FloatArray, covariance_known: bool = True
+    model: Model, input: FloatArray, scheduling: FloatArray, covariance_known: bool = True
 ) -> Simulation:
     """A rational model in discrete time without delay, its coefficients following p (N, s) at once, for u (N,).
 

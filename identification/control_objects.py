@@ -6,7 +6,7 @@ import numpy as np
 
 from identification.arrays import FloatArray
 from identification.errors import MisuseError, RangeError
-from identification.models import RationalStructure
+from identification.models.rational import RationalStructure
 
 if TYPE_CHECKING:
     import control

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from identification.models import LocalModel, LpvModel
+from identification.models.model import LocalModel, Model
 from identification.outcome import Outcome, TestResult
 
 
@@ -20,7 +20,7 @@ class LocalEstimate:
 class LpvEstimate:
     """A parameter-varying model with its outcome, tests, and the local estimates that it stands on (may be empty)."""
 
-    model: LpvModel
+    model: Model
     outcome: Outcome
     tests: tuple[TestResult, ...]
     local: tuple[LocalEstimate, ...]

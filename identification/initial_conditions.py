@@ -8,7 +8,7 @@ from scipy.linalg import qr
 from identification.arrays import FloatArray
 from identification.filtering import lfilter
 from identification.likelihood import delayed, prediction_errors
-from identification.models import RationalStructure
+from identification.models.rational import RationalStructure
 from identification.signals import TimeRecord
 
 InitialConditions = Literal["zero", "estimate"]

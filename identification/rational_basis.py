@@ -7,7 +7,7 @@ import numpy as np
 
 from identification.arrays import ComplexArray, FloatArray
 from identification.errors import RangeError
-from identification.models import RationalStructure
+from identification.models.rational import RationalStructure
 from identification.signals import FrequencyResponse
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from identification.arrays import ComplexArray, FloatArray
 from identification.errors import RangeError
 from identification.likelihood import require_same_sampling
-from identification.models import RationalStructure
+from identification.models.rational import RationalStructure
 from identification.rational_basis import (
     LinearProblem,
     as_zeta,

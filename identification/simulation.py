@@ -5,7 +5,7 @@ import numpy as np
 from identification.arrays import FloatArray
 from identification.errors import MisuseError, ShapeError
 from identification.filtering import lfilter
-from identification.models import RationalStructure
+from identification.models.rational import RationalStructure
 
 
 def simulate(

@@ -7,7 +7,7 @@ from scipy.special import chdtrc
 from identification.arrays import FloatArray
 from identification.filtering import lfilter
 from identification.likelihood import delayed
-from identification.models import RationalStructure
+from identification.models.rational import RationalStructure
 from identification.outcome import TestResult
 
 

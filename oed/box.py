@@ -104,7 +104,7 @@ class _Audit:
 
 
 def _limits(problem: ScaledProblem) -> FloatArray:
-    return np.array([[v.minimum, v.maximum] for v in problem.original.plant.dependence.variables]).T
+    return np.array([[v.minimum, v.maximum] for v in problem.original.model.dependence.variables]).T
 
 
 def _distinct(points: FloatArray) -> FloatArray:

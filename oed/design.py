@@ -92,7 +92,7 @@ def design(problem: DesignProblem, progress: Progress | None = None) -> Design:
     cannot be reached gives the status "infeasible" and advice on what to change; raises MisuseError when the model is
     unstable at a point or the targets do not fit the model.
     """
-    require_stable(problem.plant, problem.points)
+    require_stable(problem.model, problem.points)
     if problem.box and isinstance(problem.family, Multisines):
         raise MisuseError("candidate multisines need operating points to choose from; give a grid", "points")
     return designed(problem, stated(problem), progress)
@@ -187,7 +187,7 @@ def _described(problem: DesignProblem, statement: Statement, found: _Found) -> D
     k = statement.plant
     gap = 1 - found.lower_bound / found.least_energy if found.least_energy > 0 else 0.0
     points = np.array([one.operating_point for one in found.experiments]).reshape(-1, problem.points.shape[1])
-    per_sample = noise_information(problem.plant, points)
+    per_sample = noise_information(problem.model, points)
     noise_targets = statement.targets[:, k:, k:] - statement.prior[k:, k:]
     needed = required_samples(per_sample, noise_targets)
     samples = max(problem.samples, int(np.floor(needed)) + 1) if np.isfinite(needed) else problem.samples
@@ -243,7 +243,7 @@ def _covariance(information: FloatArray, k: int) -> FloatArray:
 
 
 def _noise_undetermined(problem: DesignProblem, known: FloatArray, targets: FloatArray) -> Outcome:
-    further = supplementary_points(noise_information(problem.plant, problem.points), known, targets)
+    further = supplementary_points(noise_information(problem.model, problem.points), known, targets)
     where = "; ".join(", ".join(f"{value:g}" for value in problem.points[m]) for m in further)
     remedy = f"record without input at ({where}) as well" if further else "allow more operating points"
     return Outcome("infeasible", f"the designed experiments cannot determine the noise model: {remedy}")
@@ -267,7 +267,7 @@ def _shortfall_advice(shortfall: Shortfall) -> Outcome:
 
 
 def _unreachable(problem: DesignProblem, outcome: Outcome) -> Design:
-    noise = problem.plant.dependence.size - problem.plant.plant_size
-    k = len(problem.extended.parameters) + noise
+    noise = problem.model.dependence.size - problem.model.plant_size
+    k = len(problem.model.parameters) + noise
     nothing = np.full((k, k), np.inf)
     return Design(outcome, (), np.inf, np.inf, np.inf, np.inf, problem.samples, np.inf, nothing, ())

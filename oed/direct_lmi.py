@@ -35,9 +35,9 @@ def direct_design(problem: DesignProblem) -> DirectDesign:
     with X_{m,i} = (1/2π) ∫ Re(a a*) cos(iω) dω and c in units of energy. Raises MisuseError for other families than
     FIR spectra and for a box.
     """
-    if not isinstance(problem.family, FirSpectra) or problem.box or problem.extended.effects:
+    if not isinstance(problem.family, FirSpectra) or problem.box or problem.model.effects:
         raise MisuseError("the inequality as written is for FIR spectra on a grid, without effects", "family")
-    degree, model = problem.family.degree, problem.plant
+    degree, model = problem.family.degree, problem.model
     k = model.plant_size
     moments = sensitivity_moments(model, problem.points, degree, problem.step)
     targets = np.concatenate(

@@ -11,10 +11,10 @@ from numpy.typing import ArrayLike
 from identification.arrays import ComplexArray, FloatArray
 from identification.comparison.batch import EXCITED, Batch
 from identification.errors import MisuseError
-from identification.extension.model import ExtendedModel, PlacedEffect
 from identification.extension.rows import Rows, effect_tangents, plant_tangents
-from identification.models import LpvModel
+from identification.models.model import Model
 from identification.places.place import Effect, Flow
+from identification.places.placed import PlacedEffect
 from oed.information import sensitivity
 
 
@@ -28,9 +28,9 @@ class Hypothesis:
     the two stay when the model does what it can to imitate the rival [AtkinsonFedorov1975, Section 2].
     """
 
-    model: ExtendedModel
+    model: Model
     suspected: PlacedEffect | None = None
-    rival: ExtendedModel | None = None
+    rival: Model | None = None
 
     @cached_property
     def size(self) -> int:
@@ -70,14 +70,14 @@ class Hypothesis:
     def sensitivity(self, points: ArrayLike, omega: FloatArray) -> ComplexArray:
         """a (M, F, size) with the information Re(a a*) of one unit of input energy at points (M, s) and ω (F,)."""
         if not self.effects:
-            return sensitivity(self.model.base, points, omega)
+            return sensitivity(self.model, points, omega)
         if any(effect.needs_records for effect in self.effects):
             raise MisuseError(
                 "what effects on signals show depends on the signal, not on its spectrum alone; choose candidate"
                 " multisines",
                 "family",
             )
-        batch = response_batch(self.model.base, points, omega)
+        batch = response_batch(self.model, points, omega)
         return np.stack([batch.complex_residual(row) for row in self.tangents([batch])], axis=-1)
 
 
@@ -95,7 +95,7 @@ def _require_shown(effect: Effect, flow: Flow) -> None:
         )
 
 
-def response_batch(model: LpvModel, points: ArrayLike, omega: FloatArray) -> Batch:
+def response_batch(model: Model, points: ArrayLike, omega: FloatArray) -> Batch:
     """Measurements of one unit of input energy at every frequency of every operating point, outputs zero."""
     p = model.dependence.points(points)
     nothing = np.zeros((len(p), len(omega)), dtype=np.complex128)
@@ -112,7 +112,7 @@ def response_batch(model: LpvModel, points: ArrayLike, omega: FloatArray) -> Bat
     return replace(batch, variances=noise_variances(model, batch, 1))
 
 
-def noise_variances(model: LpvModel, batch: Batch, samples: int) -> FloatArray:
+def noise_variances(model: Model, batch: Batch, samples: int) -> FloatArray:
     """E|n|² (M, K) of the lines of a period of `samples`: |H|² σ_e²/samples, twice that at real lines."""
     response = model.structure.noise_response(model.coefficients(batch.points), batch.omega)
     return np.asarray(model.noise_variance / samples * abs(response) ** 2 * np.where(batch.real, 2.0, 1.0))

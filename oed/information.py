@@ -6,14 +6,14 @@ from scipy import fft
 
 from identification.arrays import ComplexArray, FloatArray
 from identification.errors import MisuseError
-from identification.models import LpvModel
+from identification.models.model import Model
 
 LARGEST_GRID = 2**18
 CONTINUOUS_GRID = 2**14
 PRODUCTS_AT_ONCE = 2**23
 
 
-def sensitivity(model: LpvModel, points: ArrayLike, omega: FloatArray) -> ComplexArray:
+def sensitivity(model: Model, points: ArrayLike, omega: FloatArray) -> ComplexArray:
     """a(p, ω) = T_G(p)ᵀ F_u(p, e^{jω}) / σ_e,  F_u = H⁻¹ ∂G/∂ζ_G, for points (M, s) and ω (F,) rad/s, as (M, F, k_G).
 
     Re(a a*) is the information about θ_G that one unit of input energy Σ_t u(t)² gives [Ghosh2018, (7), (14)].
@@ -24,7 +24,7 @@ def sensitivity(model: LpvModel, points: ArrayLike, omega: FloatArray) -> Comple
     return model.dependence.pulled(np.swapaxes(weighted, 1, 2), points)
 
 
-def noise_information(model: LpvModel, points: ArrayLike) -> FloatArray:
+def noise_information(model: Model, points: ArrayLike) -> FloatArray:
     """X^H(p) = T_Hᵀ (1/2π ∫ F_e F_e* dω) T_H, F_e = H⁻¹ ∂H/∂ζ_H, at points (M, s), as (M, k_H, k_H).
 
     [Ghosh2018, (8), (18)] The information about θ_H that each sample of a record gives, whatever the input.
@@ -39,7 +39,7 @@ def noise_information(model: LpvModel, points: ArrayLike) -> FloatArray:
     return np.asarray(np.swapaxes(transfer, 1, 2) @ mean @ transfer)
 
 
-def sensitivity_moments(model: LpvModel, points: ArrayLike, degree: int, sample_time: float) -> FloatArray:
+def sensitivity_moments(model: Model, points: ArrayLike, degree: int, sample_time: float) -> FloatArray:
     """(1/2π) ∫ Re(a a*) cos(iΩ) dΩ, Ω = ω · sample_time in (−π, π), i = 0 … degree, as (M, degree + 1, k_G, k_G)."""
     p, grid = model.dependence.points(points), circle(model, points, degree, sample_time)
     at_once = max(1, PRODUCTS_AT_ONCE // (len(grid) * model.plant_size**2))
@@ -47,7 +47,7 @@ def sensitivity_moments(model: LpvModel, points: ArrayLike, degree: int, sample_
     return np.concatenate([cosine_moments(sensitivity(model, part, grid), degree) for part in parts])
 
 
-def circle(model: LpvModel, points: ArrayLike, degree: int, sample_time: float) -> FloatArray:
+def circle(model: Model, points: ArrayLike, degree: int, sample_time: float) -> FloatArray:
     """Frequencies from 0 to Nyquist on which the trapezoidal rule is exact to rounding in discrete time.
 
     A rational function with poles of radius ρ < 1 has moments that fall as ρ^i, and the rule on N points folds the
@@ -79,7 +79,7 @@ def cosine_moments(rows: ComplexArray, degree: int) -> FloatArray:
     return full
 
 
-def require_stable(model: LpvModel, points: ArrayLike) -> None:
+def require_stable(model: Model, points: ArrayLike) -> None:
     """Raises MisuseError when the model, or the inverse of its noise model, is unstable at one of the points."""
     p = model.dependence.points(points)
     stable = model.structure.stable(model.coefficients(p))

@@ -9,8 +9,7 @@ import numpy as np
 from identification.arrays import FloatArray, finite_floats
 from identification.comparison.batch import Batch
 from identification.errors import MisuseError, RangeError, ShapeError
-from identification.extension.model import ExtendedModel
-from identification.models import LpvModel
+from identification.models.model import Model
 from oed.decisions import Demand
 from oed.spectra.family import SpectrumFamily
 
@@ -18,7 +17,7 @@ from oed.spectra.family import SpectrumFamily
 class AccuracyTarget(Protocol):
     """How accurately θ is to be known; effects in the model are estimated with it."""
 
-    def matrices(self, model: LpvModel) -> FloatArray:
+    def matrices(self, model: Model) -> FloatArray:
         """Matrices R_j (J, k, k), block diagonal in θ_G and θ_H, with P_θ⁻¹ ⪰ R_j for all j [Ghosh2018, (15), (16)]."""
 
 
@@ -26,7 +25,7 @@ class AccuracyTarget(Protocol):
 class DecisionTarget(Protocol):
     """What the experiments are to decide about effects."""
 
-    def demands(self, model: ExtendedModel, reference: Sequence[Batch], measured: bool) -> tuple[Demand, ...]:
+    def demands(self, model: Model, reference: Sequence[Batch], measured: bool) -> tuple[Demand, ...]:
         """The hypotheses that decide it, with the accuracy that they need.
 
         `reference`: experiments that were done (`measured`), or such as the spectrum family would do.
@@ -49,7 +48,7 @@ class DesignProblem:
     certified.
     """
 
-    model: LpvModel | ExtendedModel
+    model: Model
     points: FloatArray
     targets: tuple[Target, ...]
     family: SpectrumFamily
@@ -63,7 +62,7 @@ class DesignProblem:
     box: bool = False
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "points", self.plant.dependence.points(self.points))
+        object.__setattr__(self, "points", self.model.dependence.points(self.points))
         if len(self.points) == 0 or len(np.unique(self.points, axis=0)) < len(self.points):
             raise ShapeError("give at least one operating point, and each of them once", "points")
         if not self.targets:
@@ -77,19 +76,9 @@ class DesignProblem:
         self._check_band()
 
     @property
-    def extended(self) -> ExtendedModel:
-        """The model as one that may carry effects."""
-        return self.model if isinstance(self.model, ExtendedModel) else ExtendedModel(self.model)
-
-    @property
-    def plant(self) -> LpvModel:
-        """The model without effects."""
-        return self.extended.base
-
-    @property
     def step(self) -> float:
         """The sample time of the input in seconds."""
-        return self.plant.structure.sample_time or self.sample_time or 0.0
+        return self.model.structure.sample_time or self.sample_time or 0.0
 
     @property
     def limits(self) -> FloatArray:
@@ -99,7 +88,7 @@ class DesignProblem:
     @property
     def size(self) -> int:
         """Number of parameters of the model: θ_G, those of its effects, θ_H."""
-        return len(self.extended.parameters) - self.plant.plant_size + self.plant.dependence.size
+        return len(self.model.parameters) - self.model.plant_size + self.model.dependence.size
 
     @property
     def prior(self) -> FloatArray:
@@ -130,7 +119,7 @@ class DesignProblem:
             raise RangeError("the prior information is not positive semidefinite", "prior_information")
 
     def _check_band(self) -> None:
-        if self.plant.structure.sample_time is None and not (self.sample_time and self.sample_time > 0):
+        if self.model.structure.sample_time is None and not (self.sample_time and self.sample_time > 0):
             raise MisuseError("give the sample time of the input; the model is in continuous time", "sample_time")
         if self.band is not None and not 0 <= self.band[0] <= self.band[1] <= np.pi / self.step * (1 + 1e-9):
             raise RangeError(

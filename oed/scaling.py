@@ -97,7 +97,7 @@ def _undetermined(problem: DesignProblem, one: Hypothesis) -> Outcome:
             "none of these experiments shows what is to be decided about an effect: the parameters of the model take up"
             " all that it changes; add operating points, levels or frequencies",
         )
-    needed = max(problem.plant.dependence.sizes[: problem.plant.structure.n_plant])
+    needed = max(problem.model.dependence.sizes[: problem.model.structure.n_plant])
     return Outcome(
         "infeasible",
         f"no input at these {len(problem.points)} operating points determines all parameters of the plant; at least"

@@ -7,7 +7,7 @@ import numpy as np
 
 from identification.arrays import FloatArray, IntArray
 from identification.comparison.batch import Batch
-from identification.extension.model import ExtendedModel
+from identification.models.model import Model
 from oed.decisions import Decision, Demand
 from oed.hypothesis import Hypothesis
 from oed.problem import DecisionTarget, DesignProblem
@@ -53,12 +53,12 @@ class Statement:
 
 def stated(problem: DesignProblem) -> Statement:
     """The matrices of a problem; raises MisuseError where targets do not fit the model."""
-    model = problem.extended
+    model = problem.model
     demands = _demands(problem)
     itself = Hypothesis(model)
     others = [demand.hypothesis for _, demand in demands]
     subject = Subject((itself, *others))
-    noise = model.base.dependence.size - model.base.plant_size
+    noise = model.dependence.size - model.plant_size
     size = subject.size + noise
     base = _base_places(model, subject.size)
     matrices: list[FloatArray] = []
@@ -66,7 +66,7 @@ def stated(problem: DesignProblem) -> Statement:
     for i, target in enumerate(problem.targets):
         if isinstance(target, DecisionTarget):
             continue
-        for matrix in target.matrices(model.base):
+        for matrix in target.matrices(model):
             parts.append((i, len(matrices), slice(0, size)))
             matrices.append(_embedded(matrix, base, size))
     placed = [(i, rows, demand) for (i, demand), rows in zip(demands, subject.slices[1:], strict=True)]
@@ -85,18 +85,18 @@ def _demands(problem: DesignProblem) -> list[tuple[int, Demand]]:
     if not deciding:
         return []
     reference, measured = _reference(problem)
-    return [(i, demand) for i, target in deciding for demand in target.demands(problem.extended, reference, measured)]
+    return [(i, demand) for i, target in deciding for demand in target.demands(problem.model, reference, measured)]
 
 
 def _reference(problem: DesignProblem) -> tuple[Sequence[Batch], bool]:
     if problem.prior_experiments:
         return problem.prior_experiments, True
-    return problem.family.reference(problem.extended, problem.points, problem.band, problem.step), False
+    return problem.family.reference(problem.model, problem.points, problem.band, problem.step), False
 
 
-def _base_places(model: ExtendedModel, plant: int) -> IntArray:
+def _base_places(model: Model, plant: int) -> IntArray:
     """Where θ_G and θ_H stand."""
-    k, noise = model.base.plant_size, model.base.dependence.size - model.base.plant_size
+    k, noise = model.plant_size, model.dependence.size - model.plant_size
     return np.concatenate([np.arange(k), plant + np.arange(noise)])
 
 

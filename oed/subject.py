@@ -11,8 +11,7 @@ from scipy.linalg import block_diag
 
 from identification.arrays import ComplexArray, FloatArray
 from identification.comparison.batch import Batch
-from identification.extension.model import ExtendedModel
-from identification.models import LpvModel
+from identification.models.model import Model
 from oed.hypothesis import Hypothesis
 from oed.information import CONTINUOUS_GRID, circle, cosine_moments, sensitivity_moments
 
@@ -27,14 +26,14 @@ class Subject:
     hypotheses: tuple[Hypothesis, ...]
 
     @classmethod
-    def of(cls, model: LpvModel | ExtendedModel) -> "Subject":
+    def of(cls, model: Model) -> "Subject":
         """A model by itself."""
-        return cls((Hypothesis(model if isinstance(model, ExtendedModel) else ExtendedModel(model)),))
+        return cls((Hypothesis(model),))
 
     @property
-    def base(self) -> LpvModel:
-        """The plant without effects."""
-        return self.hypotheses[0].model.base
+    def model(self) -> Model:
+        """The model as it is."""
+        return self.hypotheses[0].model
 
     @cached_property
     def slices(self) -> tuple[slice, ...]:
@@ -79,9 +78,8 @@ class Subject:
 
 
 def _moments(one: Hypothesis, points: ArrayLike, degree: int, sample_time: float) -> FloatArray:
-    base = one.model.base
     if not one.effects:
-        return sensitivity_moments(base, points, degree, sample_time)
-    grid = circle(base, points, max(degree, CONTINUOUS_GRID), sample_time)
-    parts = (one.sensitivity(point[None], grid) for point in base.dependence.points(points))
+        return sensitivity_moments(one.model, points, degree, sample_time)
+    grid = circle(one.model, points, max(degree, CONTINUOUS_GRID), sample_time)
+    parts = (one.sensitivity(point[None], grid) for point in one.model.dependence.points(points))
     return np.concatenate([cosine_moments(part, degree) for part in parts])

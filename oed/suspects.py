@@ -10,9 +10,10 @@ from identification.diagnosis.signatures import Signature, candidates
 from identification.effects.library import library
 from identification.errors import RangeError
 from identification.extension.fit import Fit, fit
-from identification.extension.model import ExtendedModel, placed
 from identification.extension.rows import Rows
+from identification.models.model import Model
 from identification.places.place import Effect
+from identification.places.placed import placed
 
 SHARP = 1e-3
 NOTHING = 1e-6
@@ -41,9 +42,7 @@ def named(kind: str, parameters: Sequence[float]) -> Effect:
     return dataclasses.replace(effect, **values)
 
 
-def with_effect(
-    model: ExtendedModel, effect: Effect, amplitude: float | None, measured: Sequence[Batch]
-) -> ExtendedModel:
+def with_effect(model: Model, effect: Effect, amplitude: float | None, measured: Sequence[Batch]) -> Model:
     """The model with the effect at an amplitude, or with what fits the measurements best where none is stated."""
     if amplitude is not None:
         return model.plus(placed(effect, 0, 1, amplitude))
@@ -53,7 +52,7 @@ def with_effect(
     return found.model
 
 
-def imitation(model: ExtendedModel, kind: str, truth: ExtendedModel, reference: Sequence[Batch]) -> ExtendedModel:
+def imitation(model: Model, kind: str, truth: Model, reference: Sequence[Batch]) -> Model:
     """The model with an effect of this kind, fitted to what the truth would give in the reference experiments."""
     batches = [dataclasses.replace(batch, outputs=truth.output(batch)) for batch in reference]
     effect = known(kind, "against")
@@ -63,7 +62,7 @@ def imitation(model: ExtendedModel, kind: str, truth: ExtendedModel, reference: 
     return found.model
 
 
-def acts(model: ExtendedModel, reference: Sequence[Batch]) -> bool:
+def acts(model: Model, reference: Sequence[Batch]) -> bool:
     """Whether the last effect of a model changes its outputs; it was not fitted away."""
     without = dataclasses.replace(model, effects=model.effects[:-1])
     return any(
@@ -72,7 +71,7 @@ def acts(model: ExtendedModel, reference: Sequence[Batch]) -> bool:
     )
 
 
-def grown(model: ExtendedModel, variants: Sequence[Effect], batches: Sequence[Batch], unit: float = 1.0) -> Fit | None:
+def grown(model: Model, variants: Sequence[Effect], batches: Sequence[Batch], unit: float = 1.0) -> Fit | None:
     """θ and the best variant of the effects fitted together, residuals in this unit; None when none of them shows."""
     base = fit(model, Rows(tuple(batches), (unit,) * len(batches)))
     seen = [one for candidate in candidates(base, variants) for one in candidate.signatures]
@@ -87,7 +86,7 @@ def grown(model: ExtendedModel, variants: Sequence[Effect], batches: Sequence[Ba
     return fit(base.model.plus(start), base.rows, tolerance=1e-6)
 
 
-def _norm(model: ExtendedModel, batches: Sequence[Batch]) -> float:
+def _norm(model: Model, batches: Sequence[Batch]) -> float:
     rows = Rows(tuple(batches))
     return float(np.linalg.norm(rows.residual([model.respond(batch) for batch in batches])))
 

@@ -11,8 +11,7 @@ from app.arrays import finite_or_none
 from app.schemas.designs import MAX_POINTS, AxesGrid, Box, DecisionDocument, DesignRequest, PointGrid
 from identification.arrays import FloatArray
 from identification.errors import MisuseError, RangeError, ShapeError
-from identification.extension.model import ExtendedModel
-from identification.models import LpvModel
+from identification.models.model import Model
 from identification.scheduling import OneVariableBasis, ParameterDependence
 from oed.decisions import Decision
 
@@ -66,7 +65,7 @@ def energy_caps(request: DesignRequest, points: FloatArray, dependence: Paramete
     return limits
 
 
-def searched_model(request: DesignRequest, model: LpvModel) -> LpvModel:
+def searched_model(request: DesignRequest, model: Model) -> Model:
     """The model with its range narrowed to the box, when the design searches one."""
     box = request.operating_points
     if not isinstance(box, Box):
@@ -90,16 +89,16 @@ def searched_model(request: DesignRequest, model: LpvModel) -> LpvModel:
     return replace(model, dependence=ParameterDependence(narrowed, bases))
 
 
-def prior_information(model: ExtendedModel, known: bool) -> FloatArray:
+def prior_information(model: Model, known: bool) -> FloatArray:
     """P⁻¹ of θ_G, the parameters of the effects and θ_H; raises MisuseError when P is not known or singular."""
     if not model.effects:
         if not known:
             raise MisuseError("the model has no covariance that could be prior information", "use_prior_information")
-        return _inverse(model.base.covariance)
-    if model.covariance is None:
+        return _inverse(model.covariance)
+    if model.joint_covariance is None:
         raise MisuseError("the model has no covariance that could be prior information", "use_prior_information")
-    noise = model.base.dependence.size - model.base.plant_size
-    return np.asarray(block_diag(_inverse(model.covariance), np.zeros((noise, noise))))
+    noise = model.dependence.size - model.plant_size
+    return np.asarray(block_diag(_inverse(model.joint_covariance), np.zeros((noise, noise))))
 
 
 def _inverse(covariance: FloatArray) -> FloatArray:

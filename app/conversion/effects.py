@@ -10,13 +10,14 @@ from app.arrays import finite_list_or_none
 from app.conversion.models import kept_model
 from app.conversion.varying_models import kept_estimate, kept_joint_covariance
 from app.schemas.effects import EffectParameter, PlacedEffectDocument
-from app.schemas.models import Model
+from app.schemas.models import Model as ModelDocument
 from app.schemas.plants import Plant
 from identification.arrays import FloatArray
 from identification.effects.library import library
 from identification.effects.second_variable import SecondVariable
-from identification.extension.model import ExtendedModel, PlacedEffect
+from identification.models.model import Model
 from identification.places.place import Effect
+from identification.places.placed import PlacedEffect
 from identification.varying.frozen import frozen
 
 
@@ -32,13 +33,14 @@ def chosen_effects(kinds: Sequence[str] | None, domain: str | None) -> tuple[Eff
     return tuple(effect for kind in kinds if (effect := effect_of(kind)) is not None)
 
 
-def extended_model(model: Model, plant: Plant) -> ExtendedModel:
+def extended_model(model: ModelDocument, plant: Plant) -> Model:
     """The model of a document with the effects that it carries; raises MisuseError where there is no such form."""
     if model.varying is not None:
         joint = kept_joint_covariance(model, plant)
         return frozen(kept_estimate(model, plant), tuple(map(placed_effect, model.effects)), joint)
     covariance = None if model.joint_covariance is None else np.array(model.joint_covariance)
-    return ExtendedModel(kept_model(model, plant), tuple(map(placed_effect, model.effects)), covariance)
+    effects = tuple(map(placed_effect, model.effects))
+    return dataclasses.replace(kept_model(model, plant), effects=effects, joint_covariance=covariance)
 
 
 def placed_effect(document: PlacedEffectDocument) -> PlacedEffect:
@@ -55,12 +57,12 @@ def placed_effect(document: PlacedEffectDocument) -> PlacedEffect:
     return PlacedEffect(dataclasses.replace(effect, **values), coefficients, document.amplitude_degree)
 
 
-def effect_documents(model: ExtendedModel) -> list[PlacedEffectDocument]:
+def effect_documents(model: Model) -> list[PlacedEffectDocument]:
     """The documents of all effects in a model."""
-    start, documents = model.base.plant_size, []
+    start, documents = model.plant_size, []
     for one in model.effects:
         stop = start + len(one.parameters())
-        documents.append(_document(one, _deviations(model.covariance, slice(start, stop))))
+        documents.append(_document(one, _deviations(model.joint_covariance, slice(start, stop))))
         start = stop
     return documents
 

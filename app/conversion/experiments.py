@@ -20,8 +20,7 @@ from app.store.arrays import ArrayStore
 from identification.comparison.batch import Batch
 from identification.comparison.gather import gather
 from identification.errors import ShapeError
-from identification.extension.model import require_matching
-from identification.models import LpvModel
+from identification.models.model import Model, require_matching
 from identification.signals import FrequencyResponse, Measurement, TimeRecord
 
 Request = TimeRecordRequest | FrequencyResponseRequest | MatrixFrequencyResponseRequest
@@ -108,7 +107,7 @@ def kept_batches(given: Sequence[Mapping[str, Any]], arrays: ArrayStore, mean_va
 
 
 def held_out_batches(
-    given: Sequence[Mapping[str, Any]], arrays: ArrayStore, mean_value: bool, model: LpvModel
+    given: Sequence[Mapping[str, Any]], arrays: ArrayStore, mean_value: bool, model: Model
 ) -> tuple[Batch, ...]:
     """The held-out experiments in a payload, if any; raises MisuseError when they do not match the model."""
     with field_named({}, "/heldOutExperimentIds"), within_doubles():

@@ -6,18 +6,18 @@ from app.arrays import finite_list_or_none
 from app.conversion.effects import effect_documents
 from app.conversion.models import accuracy_documents, range_documents
 from app.conversion.varying_models import eigenvalue_documents, joint_document, model_parts, state_space_part
-from app.schemas.models import Model
-from identification.extension.model import ExtendedModel
+from app.schemas.models import Model as ModelDocument
 from identification.extension.response import coefficients
+from identification.models.model import Model
 from identification.varying.frozen import affine_estimate
 
 
-def joint_names(model: ExtendedModel) -> list[str]:
+def joint_names(model: Model) -> list[str]:
     """Names of θ_G, then of the parameters of each effect, such as cubic_stiffness.e[0], resonance.frequency."""
-    return [*model.base.parameter_names[: model.base.plant_size], *effect_names(model)]
+    return [*model.parameter_names[: model.plant_size], *effect_names(model)]
 
 
-def effect_names(model: ExtendedModel) -> list[str]:
+def effect_names(model: Model) -> list[str]:
     """Names of the parameters of each effect."""
     names = []
     for one in model.effects:
@@ -26,7 +26,7 @@ def effect_names(model: ExtendedModel) -> list[str]:
     return names
 
 
-def extended_affine_documents(model: ExtendedModel, parent: Model) -> dict[str, Any]:
+def extended_affine_documents(model: Model, parent: ModelDocument) -> dict[str, Any]:
     """The same of a model from varying scheduling; fits along p(t) are not those of a model with effects."""
     estimate, joint = affine_estimate(model)
     parts = model_parts(estimate)
@@ -43,28 +43,28 @@ def extended_affine_documents(model: ExtendedModel, parent: Model) -> dict[str, 
     }
 
 
-def extended_documents(model: ExtendedModel) -> dict[str, Any]:
+def extended_documents(model: Model) -> dict[str, Any]:
     """What of the document of a model follows from its parameters and effects."""
-    over_range = range_documents(model.base, lambda points: coefficients(model, points))
+    over_range = range_documents(model, lambda points: coefficients(model, points))
     return {
-        "coefficientNames": list(model.base.structure.coefficient_names),
-        "parameterNames": list(model.base.parameter_names),
+        "coefficientNames": list(model.structure.coefficient_names),
+        "parameterNames": list(model.parameter_names),
         **_accuracy(model),
         "stable": over_range["stable"],
         "poles": [poles.as_json() for poles in over_range["poles"]],
         "effects": [one.as_json() for one in effect_documents(model)],
         "jointParameterNames": joint_names(model),
-        "jointCovariance": None if model.covariance is None else finite_list_or_none(model.covariance),
+        "jointCovariance": None if model.joint_covariance is None else finite_list_or_none(model.joint_covariance),
     }
 
 
-def _accuracy(model: ExtendedModel) -> dict[str, Any]:
+def _accuracy(model: Model) -> dict[str, Any]:
     """θ with its part of the joint covariance; that of a whole θ with a noise model is not estimated here."""
-    documents = accuracy_documents(model.base)
-    size = model.base.plant_size
+    documents = accuracy_documents(model)
+    size = model.plant_size
     documents |= {"covariance": None, "standardDeviations": None}
-    if model.covariance is not None and size == len(model.base.theta):
-        part = model.covariance[:size, :size]
+    if model.joint_covariance is not None and size == len(model.theta):
+        part = model.joint_covariance[:size, :size]
         documents["covariance"] = finite_list_or_none(part)
         documents["standardDeviations"] = [float(value) ** 0.5 for value in part.diagonal()]
     return documents

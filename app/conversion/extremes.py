@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from identification.errors import RangeError
-from identification.models import LpvModel
+from identification.models.model import Model
 
 Number = TypeVar("Number", np.float64, np.complex128)
 
@@ -29,7 +29,7 @@ def within_doubles() -> Iterator[None]:
         ) from error
 
 
-def require_finite(model: LpvModel) -> None:
+def require_finite(model: Model) -> None:
     """Raises RangeError when an estimate has parameters that are no numbers."""
     if not (np.isfinite(model.theta).all() and np.isfinite(model.noise_variance)):
         raise RangeError("the estimate has no finite parameters; choose units in which the data lie nearer to one")

@@ -9,14 +9,16 @@ import numpy as np
 from app.arrays import ComplexVector, finite_list_or_none, finite_or_none
 from app.conversion.extremes import finite
 from app.conversion.plants import lpv_model, parameter_dependence, rational_of
-from app.schemas.models import LocalModelDocument, Model, ModelRequest
+from app.schemas.models import LocalModelDocument, ModelRequest
+from app.schemas.models import Model as ModelDocument
 from app.schemas.outcomes import OutcomeDocument, PolesAtPoint, TestDocument
 from app.schemas.plants import CoefficientBasis, Plant, ProductBasisDocument, Structure
 from app.schemas.state_space import StateSpaceModelRequest
 from identification.arrays import FloatArray
 from identification.errors import RangeError
 from identification.estimates import LocalEstimate
-from identification.models import LpvModel, RationalStructure
+from identification.models.model import Model
+from identification.models.rational import RationalStructure
 from identification.outcome import Outcome, TestResult
 from identification.scheduling import ParameterDependence
 from identification.signals import FrequencyResponse, Measurement
@@ -42,7 +44,7 @@ def requested_structure(plant: Plant, request: ModelRequest) -> tuple[RationalSt
     return structure, parameter_dependence(structure.coefficient_names, plant.scheduling_variables, basis, own)
 
 
-def kept_model(model: Model, plant: Plant) -> LpvModel:
+def kept_model(model: ModelDocument, plant: Plant) -> Model:
     """The model of a document; one without a covariance is taken as exactly known.
 
     Raises MisuseError for a state-space model.
@@ -105,9 +107,7 @@ def _relative_error(estimate: LocalEstimate, data: Measurement | None) -> float 
     return finite_or_none(float(np.sqrt(np.mean(abs(1 - response[seen] / data.response[seen]) ** 2))))
 
 
-def range_documents(
-    model: LpvModel, coefficients_at: Callable[[FloatArray], FloatArray] | None = None
-) -> dict[str, Any]:
+def range_documents(model: Model, coefficients_at: Callable[[FloatArray], FloatArray] | None = None) -> dict[str, Any]:
     """`stable` over the range of the scheduling variables, and `poles` for one variable.
 
     Raises RangeError where coefficients or poles are too large for a number.
@@ -124,7 +124,7 @@ def range_documents(
     return {"stable": bool(np.all(model.structure.stable(coefficients))), "poles": poles}
 
 
-def accuracy_documents(model: LpvModel) -> dict[str, Any]:
+def accuracy_documents(model: Model) -> dict[str, Any]:
     """θ, its covariance and standard deviations, σ_e²."""
     return {
         "theta": model.theta.tolist(),

@@ -18,7 +18,8 @@ from app.schemas.plants import (
     Structure,
 )
 from identification.errors import MisuseError, RangeError, ShapeError
-from identification.models import LpvModel, RationalStructure
+from identification.models.model import Model
+from identification.models.rational import RationalStructure
 from identification.scheduling import ParameterDependence, ProductBasis, SchedulingVariable
 
 MAX_PARAMETERS = 200
@@ -167,7 +168,7 @@ def lpv_model(
     theta: Sequence[float],
     covariance: Sequence[Sequence[float]] | None,
     noise_variance: float,
-) -> LpvModel:
+) -> Model:
     """The model of given parameters; without a covariance it is taken as exactly known (zero covariance)."""
     k = dependence.size
     if covariance is None:
@@ -176,4 +177,4 @@ def lpv_model(
         raise ShapeError("the rows of the covariance differ in length", "covariance")
     else:
         matrix = np.array(covariance, dtype=float)
-    return LpvModel(structure, dependence, np.array(theta, dtype=float), matrix, noise_variance)
+    return Model(structure, dependence, np.array(theta, dtype=float), matrix, noise_variance)

@@ -14,7 +14,8 @@ from app.report.chain.documents import Chain, Compared, Played
 from app.report.figures.accuracy import Accuracy
 from app.schemas.designs import Design, DesignRequest
 from app.schemas.diagnoses import Diagnosis
-from app.schemas.models import Model, ModelRequest
+from app.schemas.models import Model as ModelDocument
+from app.schemas.models import ModelRequest
 from app.schemas.outcomes import OutcomeDocument
 from app.schemas.plants import Plant
 from app.schemas.signals import Signals, SignalsRequest
@@ -22,8 +23,7 @@ from app.services import designs, models, signals
 from app.services.measured import Measured
 from app.virtual_plant.campaign import SAMPLE_TIME
 from identification.errors import MisuseError
-from identification.extension.model import ExtendedModel
-from identification.models import LpvModel
+from identification.models.model import Model
 from oed.design import design
 from oed.spectra.fir import FirSpectra
 
@@ -51,7 +51,7 @@ class Story:
     hidden: str
     designed: Designed
     loop: Loop
-    versions: tuple[Model, ...]
+    versions: tuple[ModelDocument, ...]
     compared: tuple[Compared, ...]
     diagnosed: tuple[Diagnosis, ...]
 
@@ -71,28 +71,28 @@ class Story:
         """Kinds of effects that were added."""
         return [one.kind for one in self.versions[-1].effects]
 
-    def plain(self, model: Model) -> LpvModel:
+    def plain(self, model: ModelDocument) -> Model:
         """A model without its effects."""
         return kept_model(model, self.loop.plant)
 
-    def accuracy(self, model: Model) -> Accuracy:
+    def accuracy(self, model: ModelDocument) -> Accuracy:
         """Standard deviations of θ, asked, expected and reached, and the errors that were made."""
         expected = np.array(self.designed.design.expected_standard_deviations)
         error = np.array(model.theta) - task.true_parameters()
         return Accuracy(task.PARAMETERS, task.ASKED, expected, np.array(model.standard_deviations), error)
 
 
-def identified(place: Workplace, plant: Plant, experiments: list[Measured], name: str) -> Model:
+def identified(place: Workplace, plant: Plant, experiments: list[Measured], name: str) -> ModelDocument:
     """A model from experiments."""
     names = [one.id for one, _ in experiments]
     request = ModelRequest.model_validate({"plantId": plant.id, "name": name, "experimentIds": names, **IDENTIFICATION})
     found = place.run("identification", models.payload(plant, request, experiments))
-    model = Model.model_validate(stored(found.document, name, plantId=PLANT_ID, jobId=None))
+    model = ModelDocument.model_validate(stored(found.document, name, plantId=PLANT_ID, jobId=None))
     _require(model.outcome)
     return model
 
 
-def designed_second(place: Workplace, plant: Plant, first: Model, energy: float, seed: int) -> Designed:
+def designed_second(place: Workplace, plant: Plant, first: ModelDocument, energy: float, seed: int) -> Designed:
     """The least energy that adds what the first experiment has not told, as signals to play [Ghosh2018, Section 4]."""
     request = design_request(first)
     found = place.run("design", designs.payload(plant, first, request))
@@ -107,7 +107,7 @@ def designed_second(place: Workplace, plant: Plant, first: Model, energy: float,
     return Designed(made, own, _alternatives(plant, first, request, made, energy))
 
 
-def design_request(first: Model) -> DesignRequest:
+def design_request(first: ModelDocument) -> DesignRequest:
     """Standard deviations of the four parameters, with what the first experiment has told as prior information."""
     wanted = [float(sigma) for sigma in (1 - task.MARGIN) * task.ASKED]
     axis = {"minimum": task.POSITION.minimum, "maximum": task.POSITION.maximum, "count": task.GRID}
@@ -128,14 +128,14 @@ def design_request(first: Model) -> DesignRequest:
 
 
 def _alternatives(
-    plant: Plant, first: Model, request: DesignRequest, made: Design, energy: float
+    plant: Plant, first: ModelDocument, request: DesignRequest, made: Design, energy: float
 ) -> tuple[tuple[str, float], ...]:
     """Energies: as designed; white noise at the best positions; repeating the first experiment.
 
     s times the first experiment give s P_θ₁⁻¹ ⪰ R, so s is the largest eigenvalue of R P_θ₁.
     """
     known = kept_model(first, plant)
-    problem = replace(stated_problem(request, ExtendedModel(known), True), family=FirSpectra(0), band=None)
+    problem = replace(stated_problem(request, known, True), family=FirSpectra(0), band=None)
     sigma = (1 - task.MARGIN) * task.ASKED
     times = float(np.linalg.eigvalsh(known.covariance / np.outer(sigma, sigma))[-1])
     return (

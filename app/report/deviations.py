@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from identification.arrays import ComplexArray, FloatArray
-from identification.models import LocalModel, LpvModel, RationalStructure
+from identification.models.model import LocalModel, Model
+from identification.models.rational import RationalStructure
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,7 +25,7 @@ class UncertainPoles:
         return self.values.imag, self.imaginary_deviation
 
 
-def poles_of(model: LpvModel, points: ArrayLike) -> UncertainPoles:
+def poles_of(model: Model, points: ArrayLike) -> UncertainPoles:
     """Along operating points (M, s)."""
     values, sensitivity = _sensitivity(model.structure, model.coefficients(points))
     by_theta = model.dependence.pulled(sensitivity, points)

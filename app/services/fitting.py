@@ -8,7 +8,7 @@ from app.errors import UnprocessableError
 from app.schemas.experiments import Experiment
 from app.schemas.models import Model, ModelRequest
 from app.schemas.plants import Plant
-from identification.models import RationalStructure
+from identification.models.rational import RationalStructure
 from identification.scheduling import ParameterDependence
 from identification.signals import TimeRecord
 

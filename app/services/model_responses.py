@@ -92,7 +92,7 @@ def _extended(document: Model, plant: Plant, point: list[float]) -> _Evaluated:
 
     left_out = tuple(effect.kind for effect in found(np.ones(1)).left_out)
     return _Evaluated(
-        model.base.structure.sample_time,
+        model.structure.sample_time,
         lambda omega: found(omega).response[0],
         covariance if known else None,
         left_out,

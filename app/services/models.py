@@ -12,7 +12,8 @@ from app.conversion.plants import is_state_space, lpv_model, structure_and_depen
 from app.errors import UnprocessableError
 from app.jobs.records import JobRecord
 from app.schemas.experiments import Experiment
-from app.schemas.models import Model, ModelList, ModelRequest, StatedModelRequest
+from app.schemas.models import Model as ModelDocument
+from app.schemas.models import ModelList, ModelRequest, StatedModelRequest
 from app.schemas.outcomes import OutcomeDocument
 from app.schemas.plants import Plant
 from app.services.documents import fields, items, named, of_plant
@@ -21,7 +22,8 @@ from app.services.fitting import check_fitting, check_prior
 from app.services.jobs import fingerprint
 from app.services.plants import plant_of
 from app.store.resources import Resource, ResourceRepository
-from identification.models import LpvModel, RationalStructure
+from identification.models.model import Model
+from identification.models.rational import RationalStructure
 
 KIND = "models"
 STATE_SPACE = "the plant has a state-space structure; its models are identified with POST /v1/models/state-space"
@@ -43,7 +45,10 @@ def submit(container: Container, request: ModelRequest, key: str | None) -> JobR
 
 
 def payload(
-    plant: Plant, request: ModelRequest, experiments: Sequence[tuple[Experiment, str]], prior: Model | None = None
+    plant: Plant,
+    request: ModelRequest,
+    experiments: Sequence[tuple[Experiment, str]],
+    prior: ModelDocument | None = None,
 ) -> dict[str, Any]:
     """What the task gets; raises UnprocessableError when experiments, structure and estimators do not fit."""
     if request.structure is None and is_state_space(plant.structure):
@@ -97,20 +102,20 @@ def stated(plant: Plant, request: StatedModelRequest) -> dict[str, Any]:
     }
 
 
-def state(resources: ResourceRepository, request: StatedModelRequest) -> Model:
+def state(resources: ResourceRepository, request: StatedModelRequest) -> ModelDocument:
     """Keep a stated model."""
     plant = plant_of(named(resources, "plants", request.plant_id, "/plantId"))
     return model_of(resources.add(KIND, stated(plant, request), plant.id))
 
 
-def unstable_advice(structure: RationalStructure, model: LpvModel) -> str:
+def unstable_advice(structure: RationalStructure, model: Model) -> str:
     """Why a model is refused."""
     what = "G is unstable" if structure.n_noise == 0 else "G, H or the inverse of H is unstable"
     names = ", ".join(model.parameter_names)
     return f"with these parameters ({names}) {what} somewhere in the range; correct theta or narrow the range"
 
 
-def require_without_effects(model: Model, pointer: str, location: str = "body") -> None:
+def require_without_effects(model: ModelDocument, pointer: str, location: str = "body") -> None:
     """Raises UnprocessableError for a model with effects, where only the plant itself would be looked at."""
     if model.effects:
         kinds = ", ".join(one.kind for one in model.effects)
@@ -121,12 +126,12 @@ def require_without_effects(model: Model, pointer: str, location: str = "body") 
         )
 
 
-def model_of(resource: Resource) -> Model:
+def model_of(resource: Resource) -> ModelDocument:
     """The model in a row."""
-    return Model.model_validate(fields(resource, "plantId", "jobId"))
+    return ModelDocument.model_validate(fields(resource, "plantId", "jobId"))
 
 
-def get(resources: ResourceRepository, model_id: str) -> Model:
+def get(resources: ResourceRepository, model_id: str) -> ModelDocument:
     """The model of an identifier."""
     return model_of(resources.get(KIND, model_id))
 

@@ -14,7 +14,8 @@ from identification.comparison.gather import gather
 from identification.diagnosis.diagnose import PARTLY
 from identification.diagnosis.staircase import Step, conclusion, staircase
 from identification.effects.misplaced_point import MisplacedPoint
-from identification.extension.model import ExtendedModel, PlacedEffect
+from identification.models.model import Model
+from identification.places.placed import PlacedEffect
 
 
 @dataclass(frozen=True)
@@ -86,7 +87,7 @@ def _camel(words: str) -> str:
     return head + "".join(word.capitalize() for word in tail)
 
 
-def added(model: ExtendedModel, one: PlacedEffect, number: int) -> dict[str, Any]:
+def added(model: Model, one: PlacedEffect, number: int) -> dict[str, Any]:
     """Kind, mean amplitude with its standard error where there is one of it, and the place of a misplaced point."""
     single = one.effect.shapes == 1
     return {
@@ -97,14 +98,14 @@ def added(model: ExtendedModel, one: PlacedEffect, number: int) -> dict[str, Any
     }
 
 
-def _deviation(model: ExtendedModel, number: int) -> float | None:
-    if model.covariance is None:
+def _deviation(model: Model, number: int) -> float | None:
+    if model.joint_covariance is None:
         return None
     before = sum(len(one.parameters()) for one in model.effects[:number])
-    place = model.base.plant_size + before
-    return float(np.sqrt(max(model.covariance[place, place], 0.0)))
+    place = model.plant_size + before
+    return float(np.sqrt(max(model.joint_covariance[place, place], 0.0)))
 
 
-def _logged_at(model: ExtendedModel, effect: MisplacedPoint) -> float:
-    variable = model.base.dependence.variables[effect.variable]
+def _logged_at(model: Model, effect: MisplacedPoint) -> float:
+    variable = model.dependence.variables[effect.variable]
     return variable.minimum + (effect.point + 1) / 2 * (variable.maximum - variable.minimum)

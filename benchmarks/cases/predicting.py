@@ -4,14 +4,14 @@ import numpy as np
 
 from benchmarks.cases.reading import HeldOut, repeated
 from identification.arrays import ComplexArray, FloatArray
-from identification.extension.model import ExtendedModel
 from identification.extension.response import linear_response
 from identification.extension.steady_period import steady_period
+from identification.models.model import Model
 
 RELEASE = 1
 
 
-def predicted(model: ExtendedModel, one: HeldOut) -> FloatArray | ComplexArray:
+def predicted(model: Model, one: HeldOut) -> FloatArray | ComplexArray:
     """The output (samples,), or the response (F,) at the frequencies of the experiment.
 
     An input that repeats itself is answered by the steady output. One that does not is followed by as many zeros as it
@@ -32,6 +32,6 @@ def _one_period(input: FloatArray, period: int) -> FloatArray:
     return np.asarray(periods[min(1, len(periods) - 1) :].mean(axis=0))
 
 
-def _steady(model: ExtendedModel, one: HeldOut, played: FloatArray) -> FloatArray:
+def _steady(model: Model, one: HeldOut, played: FloatArray) -> FloatArray:
     found = steady_period(model, played, one.sample_time, [one.point], one.logged, covariance_known=False)
     return found.output[0]

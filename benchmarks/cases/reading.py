@@ -11,8 +11,8 @@ import numpy as np
 from identification.arrays import FloatArray
 from identification.bases.polynomial import Polynomial
 from identification.channels import Channel, Channels, Quantity
-from identification.extension.model import ExtendedModel
-from identification.models import LpvModel, RationalStructure
+from identification.models.model import Model
+from identification.models.rational import RationalStructure
 from identification.scheduling import ParameterDependence, ProductBasis, SchedulingVariable
 from identification.signals import FrequencyResponse, Hold, Measurement, TimeRecord
 
@@ -57,7 +57,7 @@ class Case:
     """One campaign: the model to begin with, what was measured, and what is to be predicted."""
 
     name: str
-    model: ExtendedModel
+    model: Model
     fitted: tuple[Measurement, ...]
     logged: tuple[Mapping[str, float], ...]
     held_out: tuple[HeldOut, ...]
@@ -157,14 +157,14 @@ def repeated(signal: FloatArray, samples: int) -> FloatArray:
     return np.asarray(np.resize(signal, samples))
 
 
-def _model(entry: Mapping[str, Any]) -> ExtendedModel:
+def _model(entry: Mapping[str, Any]) -> Model:
     structure = RationalStructure(**entry["structure"])
     said = entry["scheduling"]
     every = [said] if isinstance(said, Mapping) else said
     variables = tuple(SchedulingVariable(v["name"], v.get("unit") or "", v["minimum"], v["maximum"]) for v in every)
     bases = tuple(_basis(degrees, len(variables)) for degrees in entry["polynomial_degrees"])
     theta = np.array(entry["theta_start"], dtype=np.float64)
-    return ExtendedModel(LpvModel(structure, ParameterDependence(variables, bases), theta, np.eye(len(theta)), 1.0))
+    return Model(structure, ParameterDependence(variables, bases), theta, np.eye(len(theta)), 1.0)
 
 
 def _basis(degrees: int | Sequence[int], variables: int) -> ProductBasis:

@@ -15,7 +15,8 @@ from identification.comparison.gather import gather
 from identification.diagnosis.diagnose import Diagnosis, diagnose
 from identification.diagnosis.staircase import refined, relative_error
 from identification.extension.fit import Fit, fit
-from identification.extension.model import ExtendedModel, placed
+from identification.models.model import Model
+from identification.places.placed import placed
 
 INVISIBLE = {"time_base"}
 TIED_TO_RECORDS = {"misplaced_point", "second_variable", "gain_drift", "hum"}
@@ -86,7 +87,7 @@ def _added(kind: str, found: Diagnosis) -> dict[str, Any]:
     }
     if right is not None:
         result["error of the true structure"] = relative_error(right.model, outside)
-    if right is grown and grown.model.covariance is not None:
+    if right is grown and grown.model.joint_covariance is not None:
         result["z"] = _deviations(kind, grown.model)
     return result
 
@@ -103,12 +104,12 @@ def _true_structure(kind: str, found: Diagnosis) -> Fit | None:
     return None
 
 
-def _deviations(kind: str, model: ExtendedModel) -> list[float]:
-    assert model.covariance is not None
-    size = model.base.plant_size
+def _deviations(kind: str, model: Model) -> list[float]:
+    assert model.joint_covariance is not None
+    size = model.plant_size
     effect = model.effects[-1]
     errors = effect.coefficients.ravel() - truth(kind)
-    sigma = np.sqrt(np.diag(model.covariance)[size : size + effect.size])
+    sigma = np.sqrt(np.diag(model.joint_covariance)[size : size + effect.size])
     return [float(z) for z in errors / sigma]
 
 

@@ -8,7 +8,7 @@ from benchmarks.virtual_bench.figures import quantiles, rate
 from benchmarks.virtual_bench.hits import held_out, kinds
 from benchmarks.virtual_bench.study import MODEL, design, effects, measured
 from identification.diagnosis.staircase import relative_error, staircase
-from identification.extension.model import ExtendedModel
+from identification.models.model import Model
 
 SHARE = 0.03
 FLOOR = 1e-3
@@ -41,7 +41,7 @@ def one(task: tuple[str, str, int]) -> dict[str, Any]:
     }
 
 
-def _error(model: ExtendedModel, hidden: tuple[str, ...]) -> float:
+def _error(model: Model, hidden: tuple[str, ...]) -> float:
     return relative_error(model, held_out(hidden))
 
 

@@ -12,9 +12,9 @@ from identification.bases.polynomial import Polynomial
 from identification.comparison.gather import gather
 from identification.effects.library import library
 from identification.effects.second_variable import SecondVariable
-from identification.extension.model import ExtendedModel
 from identification.extension.rows import Rows, plant_tangents
-from identification.models import LpvModel, RationalStructure
+from identification.models.model import Model
+from identification.models.rational import RationalStructure
 from identification.scheduling import ParameterDependence, ProductBasis, SchedulingVariable
 
 P = SchedulingVariable("p", "1", -1.0, 1.0)
@@ -22,7 +22,7 @@ P = SchedulingVariable("p", "1", -1.0, 1.0)
 
 def _model(order, theta, degrees):
     dependence = ParameterDependence((P,), tuple(ProductBasis((Polynomial(n),)) for n in degrees))
-    return ExtendedModel(LpvModel(RationalStructure(order, 0), dependence, np.array(theta), np.eye(len(theta)), 1.0))
+    return Model(RationalStructure(order, 0), dependence, np.array(theta), np.eye(len(theta)), 1.0)
 
 
 MODEL = _model(2, [1.8, 64.0, 28.0, 1.0], (0, 1, 0))

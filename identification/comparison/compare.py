@@ -16,8 +16,8 @@ from identification.comparison.noise import noise_freedom
 from identification.comparison.responses import ComparedResponses, compared_responses
 from identification.errors import MisuseError
 from identification.extension.fit import Fit, fit
-from identification.extension.model import ExtendedModel, require_matching
 from identification.extension.rows import Rows, effect_tangents, plant_tangents
+from identification.models.model import Model, require_matching
 from identification.outcome import TestResult
 from identification.places.place import Flow
 from identification.whiteness import orthonormal
@@ -93,14 +93,14 @@ class _Judge:
         return noise_freedom(self.rows.batches, self.rows.parts(chosen / max(float(chosen.sum()), 1.0)))
 
 
-def compare(model: ExtendedModel, batches: Sequence[Batch], fitted: bool = True) -> Comparison:
+def compare(model: Model, batches: Sequence[Batch], fitted: bool = True) -> Comparison:
     """Hold a model, as it is, against batches of measurements.
 
     `fitted`: the model was fitted to these very data; as many degrees of freedom as its parameters are taken off, and
     what a refit would bring is told beside. Otherwise the model's own uncertainty is added to that of the noise: r has
     the covariance I + J P Jᵀ. Raises MisuseError for a model without (finite) covariance then.
     """
-    require_matching(model.base, batches)
+    require_matching(model, batches)
     rows = Rows(tuple(batches))
     flows, judge = _fitted(model, rows) if fitted else _held_out(model, rows)
     refit = fit(model, rows) if fitted else None
@@ -154,7 +154,7 @@ def _compared(rows: Rows) -> BoolArray:
     return np.concatenate([batch.compared for batch in rows.batches])
 
 
-def _fitted(model: ExtendedModel, rows: Rows) -> tuple[tuple[Flow, ...], _Judge]:
+def _fitted(model: Model, rows: Rows) -> tuple[tuple[Flow, ...], _Judge]:
     flows = tuple(model.respond(batch) for batch in rows.batches)
     tangents = _tangents(model, rows, flows)
     return flows, _Judge(rows, rows.residual(flows), tangents, None, _compared(rows), _leverage(tangents))
@@ -164,15 +164,15 @@ def _leverage(tangents: FloatArray) -> FloatArray:
     return np.asarray(np.sum(orthonormal(tangents.T) ** 2, axis=1))
 
 
-def _tangents(model: ExtendedModel, rows: Rows, flows: tuple[Flow, ...]) -> FloatArray:
+def _tangents(model: Model, rows: Rows, flows: tuple[Flow, ...]) -> FloatArray:
     every = [plant_tangents(model, rows, flows), *(effect_tangents(one, rows, flows) for one in model.effects)]
     return np.concatenate(every)
 
 
-def _held_out(model: ExtendedModel, rows: Rows) -> tuple[tuple[Flow, ...], _Judge]:
+def _held_out(model: Model, rows: Rows) -> tuple[tuple[Flow, ...], _Judge]:
     flows = tuple(model.respond(batch) for batch in rows.batches)
     covariance = _covariance(model)
-    start = model.base.plant_size
+    start = model.plant_size
     for one in model.effects:
         stop = start + len(one.parameters())
         covariance[start + one.size : stop] /= one.effect.values()[:, None]
@@ -183,11 +183,8 @@ def _held_out(model: ExtendedModel, rows: Rows) -> tuple[tuple[Flow, ...], _Judg
     return flows, _Judge(rows, residual, _tangents(model, rows, flows), covariance, _compared(rows), nothing)
 
 
-def _covariance(model: ExtendedModel) -> FloatArray:
-    size = model.base.plant_size
-    found = model.covariance
-    if found is None and not model.effects:
-        found = model.base.covariance[:size, :size]
+def _covariance(model: Model) -> FloatArray:
+    found = model.known_covariance
     if found is None or not np.all(np.isfinite(found)):
         raise MisuseError("the model has no covariance; fit it to data first, or state its covariance", "model")
     return np.array(found)

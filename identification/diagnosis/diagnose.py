@@ -16,8 +16,8 @@ from identification.effects.library import library
 from identification.effects.second_variable import with_logged
 from identification.errors import MisuseError
 from identification.extension.fit import Fit, fit
-from identification.extension.model import ExtendedModel, require_matching
 from identification.extension.rows import Rows
+from identification.models.model import Model, require_matching
 from identification.outcome import TestResult
 from identification.places.place import Effect
 
@@ -75,9 +75,9 @@ class Diagnosis:
         return self.best is not None and self.best.weight > 1 - LEVEL and self.remaining.p_value >= STRICT
 
 
-def rows_of(model: ExtendedModel, batches: Sequence[Batch]) -> Rows:
+def rows_of(model: Model, batches: Sequence[Batch]) -> Rows:
     """The batches as rows for a model; noise of unknown size is scaled by what the model leaves."""
-    require_matching(model.base, batches)
+    require_matching(model, batches)
     rows = Rows(tuple(batches))
     if rows.scaled:
         return rows
@@ -87,7 +87,7 @@ def rows_of(model: ExtendedModel, batches: Sequence[Batch]) -> Rows:
 
 
 def diagnose(
-    model: ExtendedModel,
+    model: Model,
     batches: Sequence[Batch],
     effects: Sequence[Effect] | None = None,
     degree: int = 0,

@@ -8,8 +8,8 @@ import numpy as np
 from identification.arrays import FloatArray
 from identification.diagnosis.scores import Score
 from identification.extension.fit import Fit, fit
-from identification.extension.model import PlacedEffect
 from identification.extension.rows import Rows
+from identification.places.placed import PlacedEffect
 
 SHORT_LIST = 8
 STARTS = 2

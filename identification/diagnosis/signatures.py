@@ -9,9 +9,9 @@ from identification.arrays import FloatArray
 from identification.comparison.noise import noise_freedom, variance_of_projection
 from identification.effects.misplaced_point import MisplacedPoint
 from identification.extension.fit import Fit
-from identification.extension.model import PlacedEffect, placed
 from identification.extension.rows import effect_tangents
 from identification.places.place import Effect
+from identification.places.placed import PlacedEffect, placed
 from identification.whiteness import orthonormal
 
 INVISIBLE = 1e-4

@@ -9,7 +9,7 @@ import numpy as np
 from identification.comparison.batch import EXCITED, Batch
 from identification.diagnosis.diagnose import STRICT, Diagnosis, diagnose
 from identification.extension.fit import Fit, fit
-from identification.extension.model import ExtendedModel
+from identification.models.model import Model
 from identification.places.place import Effect
 from identification.places.simulate import NoSteadyStateError
 
@@ -30,12 +30,12 @@ class Step:
     diagnosis: Diagnosis
 
     @property
-    def model(self) -> ExtendedModel:
+    def model(self) -> Model:
         """The model of this step."""
         return self.fit.model
 
 
-def relative_error(model: ExtendedModel, batches: Sequence[Batch]) -> float:
+def relative_error(model: Model, batches: Sequence[Batch]) -> float:
     """‖Y − Ŷ‖/‖Y‖ over the excited lines; each line by its own size where no noise is known (relative weighting)."""
     error = size = 0.0
     for batch in batches:
@@ -48,7 +48,7 @@ def relative_error(model: ExtendedModel, batches: Sequence[Batch]) -> float:
 
 
 def staircase(
-    model: ExtendedModel,
+    model: Model,
     batches: Sequence[Batch],
     held_out: Sequence[Batch] = (),
     effects: Sequence[Effect] | None = None,

@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from identification.arrays import FloatArray
-from identification.extension.model import ExtendedModel
 from identification.extension.rows import Rows, effect_tangents, plant_tangents
+from identification.models.model import Model
 from identification.outcome import Outcome
 from identification.places.place import Flow
 from identification.places.simulate import NoSteadyStateError
@@ -20,7 +20,7 @@ POLISHING, POLISHED = 4, 1e-3
 class Fit:
     """A fitted model with its whitened residual (R,), tangents (parameters, R) and the signals of each batch."""
 
-    model: ExtendedModel
+    model: Model
     residual: FloatArray
     tangents: FloatArray
     flows: tuple[Flow, ...]
@@ -40,7 +40,7 @@ def _cost(count: int, scaled: bool, residual: FloatArray) -> float:
 
 
 def fit(
-    model: ExtendedModel,
+    model: Model,
     rows: Rows,
     iterations: int = 20,
     tolerance: float = 1e-3,
@@ -79,7 +79,7 @@ def _energy(found: Fit) -> float:
     return float(found.residual @ found.residual)
 
 
-def _at(model: ExtendedModel, rows: Rows, before: Sequence[Flow] | None) -> Fit:
+def _at(model: Model, rows: Rows, before: Sequence[Flow] | None) -> Fit:
     starts = [None] * len(rows.batches) if before is None else [flow.core for flow in before]
     flows = tuple(model.respond(batch, start) for batch, start in zip(rows.batches, starts, strict=True))
     tangents = [plant_tangents(model, rows, flows), *(effect_tangents(one, rows, flows) for one in model.effects)]
@@ -114,10 +114,10 @@ def _descend(current: Fit, step: FloatArray) -> Fit | None:
     return None
 
 
-def _moved(current: Fit, step: FloatArray) -> ExtendedModel:
+def _moved(current: Fit, step: FloatArray) -> Model:
     """The model after a step; further parameters are multiplied, all keep to their physical range."""
     model = current.model
-    plant = model.base.plant_size
+    plant = model.plant_size
     values = model.parameters + step
     start = plant
     old = model.parameters
@@ -163,9 +163,9 @@ def _difference(current: Fit, i: int, tangent: FloatArray) -> FloatArray:
     return tangent
 
 
-def _free_move(model: ExtendedModel, step: FloatArray) -> ExtendedModel:
+def _free_move(model: Model, step: FloatArray) -> Model:
     values = model.parameters
-    start = model.base.plant_size
+    start = model.plant_size
     values[:start] += step[:start]
     for one in model.effects:
         end, stop = start + one.size, start + len(one.parameters())
@@ -175,10 +175,10 @@ def _free_move(model: ExtendedModel, step: FloatArray) -> ExtendedModel:
     return model.with_parameters(values)
 
 
-def _with_covariance(found: Fit) -> ExtendedModel:
+def _with_covariance(found: Fit) -> Model:
     """(JᵀJ)⁻¹, further parameters by their own value; times ‖r‖²/(R − k) where the size of the noise is not known."""
     scale = np.ones(len(found.tangents))
-    start = found.model.base.plant_size
+    start = found.model.plant_size
     for one in found.model.effects:
         stop = start + len(one.parameters())
         scale[start + one.size : stop] = one.effect.values()
@@ -186,12 +186,12 @@ def _with_covariance(found: Fit) -> ExtendedModel:
     tangents = found.tangents / scale[:, None]
     size = np.linalg.norm(tangents, axis=1)
     if np.any(size == 0):
-        return replace(found.model, covariance=None)
+        return replace(found.model, joint_covariance=None)
     gram = (tangents @ tangents.T) / np.outer(size, size)
     values, vectors = np.linalg.eigh(gram)
     if values[0] <= 1e-11 * values[-1]:
-        return replace(found.model, covariance=None)
+        return replace(found.model, joint_covariance=None)
     inverse = (vectors / values) @ vectors.T / np.outer(size, size)
     if not found.rows.scaled:
         inverse = inverse * float(found.residual @ found.residual) / max(found.rows.count - len(size), 1)
-    return replace(found.model, covariance=inverse)
+    return replace(found.model, joint_covariance=inverse)

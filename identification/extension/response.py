@@ -7,10 +7,11 @@ from numpy.typing import ArrayLike
 
 from identification.arrays import ComplexArray, FloatArray
 from identification.comparison.batch import EXCITED, Batch
-from identification.extension.model import ExtendedModel, PlacedEffect
 from identification.extension.rows import Rows, effect_tangents, plant_tangents
+from identification.models.model import Model
 from identification.places.linear import Coefficient, Factor, FrequencyAxis, Parallel
 from identification.places.place import Effect
+from identification.places.placed import PlacedEffect
 
 LINEAR = (Coefficient, Factor, FrequencyAxis, Parallel)
 
@@ -27,28 +28,26 @@ class LinearResponse:
     left_out: tuple[Effect, ...]
 
 
-def linear_response(model: ExtendedModel, points: ArrayLike, omega: FloatArray) -> LinearResponse:
+def linear_response(model: Model, points: ArrayLike, omega: FloatArray) -> LinearResponse:
     """G(p, ω) at points (M, s) and ω (F,): exact with effects that act linearly, else that of the linear core.
 
     The covariance is J P Jᵀ, to first order in the joint covariance P of all parameters; without effects P_θ.
     """
-    if not model.effects and model.covariance is None:
-        size = model.base.plant_size
-        model = replace(model, covariance=model.base.covariance[:size, :size])
     held = [_acts_linearly(one.effect) for one in model.effects]
     left_out = tuple(one.effect for one, kept in zip(model.effects, held, strict=True) if not kept)
-    kept = with_only(model, held)
-    batch = _unit_input(model.base.dependence.points(points), omega)
+    kept = with_only(replace(model, joint_covariance=model.known_covariance), held)
+    batch = _unit_input(model.dependence.points(points), omega)
     with np.errstate(divide="ignore", invalid="ignore"):
         flow = kept.respond(batch)
-        covariance = None if kept.covariance is None else _covariance(kept, kept.covariance, batch)
+        known = kept.joint_covariance
+        covariance = None if known is None else _covariance(kept, known, batch)
     return LinearResponse(flow.output, covariance, left_out)
 
 
-def coefficients(model: ExtendedModel, points: ArrayLike) -> FloatArray:
+def coefficients(model: Model, points: ArrayLike) -> FloatArray:
     """ζ(p) at the points (M, s) with what effects change of it, (M, n)."""
     changing = [isinstance(one.effect, Coefficient) and _acts_linearly(one.effect) for one in model.effects]
-    batch = _unit_input(model.base.dependence.points(points), np.ones(1))
+    batch = _unit_input(model.dependence.points(points), np.ones(1))
     return with_only(model, changing).respond(batch).setting.zeta
 
 
@@ -56,14 +55,14 @@ def _acts_linearly(effect: Effect) -> bool:
     return isinstance(effect, LINEAR) and not effect.of_measurements
 
 
-def with_only(model: ExtendedModel, held: list[bool]) -> ExtendedModel:
+def with_only(model: Model, held: list[bool]) -> Model:
     """The model with some of its effects, and their part of the joint covariance."""
-    chosen = [np.ones(model.base.plant_size, dtype=np.bool_)]
+    chosen = [np.ones(model.plant_size, dtype=np.bool_)]
     chosen += [np.full(len(one.parameters()), kept) for one, kept in zip(model.effects, held, strict=True)]
     part = np.flatnonzero(np.concatenate(chosen))
-    covariance = None if model.covariance is None else model.covariance[np.ix_(part, part)]
+    covariance = None if model.joint_covariance is None else model.joint_covariance[np.ix_(part, part)]
     effects = tuple(one for one, kept in zip(model.effects, held, strict=True) if kept)
-    return replace(model, effects=effects, covariance=covariance)
+    return replace(model, effects=effects, joint_covariance=covariance)
 
 
 def _unit_input(points: FloatArray, omega: FloatArray) -> Batch:
@@ -80,7 +79,7 @@ def _unit_input(points: FloatArray, omega: FloatArray) -> Batch:
     )
 
 
-def _covariance(model: ExtendedModel, known: FloatArray, batch: Batch) -> FloatArray:
+def _covariance(model: Model, known: FloatArray, batch: Batch) -> FloatArray:
     rows, flows = Rows((batch,)), (model.respond(batch),)
     tangents = [plant_tangents(model, rows, flows)]
     tangents += [effect_tangents(one, rows, flows) / _scale(one)[:, None] for one in model.effects]

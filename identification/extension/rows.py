@@ -8,8 +8,9 @@ import numpy as np
 from identification.arrays import ComplexArray, FloatArray
 from identification.comparison.batch import Batch
 from identification.comparison.noise import noise_freedom
-from identification.extension.model import ExtendedModel, PlacedEffect, amplitude_basis
+from identification.models.model import Model
 from identification.places.place import Effect, Flow
+from identification.places.placed import PlacedEffect, amplitude_basis
 
 FURTHER_STEP = 1e-4
 
@@ -57,12 +58,12 @@ class Rows:
         return all(batch.scaled for batch in self.batches)
 
 
-def plant_tangents(model: ExtendedModel, rows: Rows, flows: Sequence[Flow]) -> FloatArray:
+def plant_tangents(model: Model, rows: Rows, flows: Sequence[Flow]) -> FloatArray:
     """∂Ŷ/∂θ_G whitened, (k_G, R)."""
     spectra = []
     for flow in flows:
         by_zeta = np.swapaxes(flow.gradient * (flow.drive * flow.factor)[:, None, :], 1, 2)
-        spectra.append(np.moveaxis(model.base.dependence.pulled(by_zeta, flow.batch.points), -1, 0))
+        spectra.append(np.moveaxis(model.dependence.pulled(by_zeta, flow.batch.points), -1, 0))
     return rows.whiten(spectra)
 
 

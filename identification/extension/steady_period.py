@@ -11,12 +11,13 @@ from identification.comparison.batch import EXCITED, Batch
 from identification.confidence import covariance_root
 from identification.effects.second_variable import SecondVariable
 from identification.errors import MisuseError, RangeError, ShapeError
-from identification.extension.model import ExtendedModel, PlacedEffect, require_matching
 from identification.extension.response import with_only
+from identification.models.model import Model, require_matching
 from identification.places.linear import Factor, Parallel
 from identification.places.newton import newton
 from identification.places.nonlinear import Added, Feedback
 from identification.places.place import Effect, Flow
+from identification.places.placed import PlacedEffect
 from identification.places.simulate import NoSteadyStateError
 
 FINER = 4
@@ -49,7 +50,7 @@ class SteadyPeriod:
 
 
 def steady_period(
-    model: ExtendedModel,
+    model: Model,
     input: ArrayLike,
     sample_time: float,
     points: ArrayLike,
@@ -71,19 +72,19 @@ def steady_period(
     effect too strong; ShapeError, RangeError and MisuseError for input, points, sampling or quantities that do not fit.
     """
     kept, left_out = _held(model, logged or {}, covariance_known)
-    p = kept.base.dependence.points(points)
+    p = kept.dependence.points(points)
     outputs, deviations = [], []
     for point in p:
         batch = batch_of_period(kept, input, sample_time, point, logged or {})
         flow = _settled(kept, batch, point)
         outputs.append(_samples(batch, flow.output, kept))
-        deviations.append(None if kept.covariance is None else _deviation(kept, batch, flow))
+        deviations.append(None if kept.joint_covariance is None else _deviation(kept, batch, flow))
     known = [one for one in deviations if one is not None]
     return SteadyPeriod(np.array(outputs), np.array(known) if len(known) == len(outputs) else None, left_out)
 
 
 def batch_of_period(
-    model: ExtendedModel, input: ArrayLike, sample_time: float, point: FloatArray, logged: Mapping[str, float]
+    model: Model, input: ArrayLike, sample_time: float, point: FloatArray, logged: Mapping[str, float]
 ) -> Batch:
     """A measurement of nothing at one operating point (s,), with u (L,) as its input over one period.
 
@@ -114,33 +115,27 @@ def batch_of_period(
         sample_time=sample_time / finer,
         logged={name: np.array([value], dtype=np.float64) for name, value in logged.items()},
     )
-    require_matching(model.base, (batch,))
+    require_matching(model, (batch,))
     return batch
 
 
-def _finer(model: ExtendedModel) -> int:
-    return 1 if model.base.structure.is_discrete else FINER
+def _finer(model: Model) -> int:
+    return 1 if model.structure.is_discrete else FINER
 
 
-def _samples(batch: Batch, spectra: ComplexArray, model: ExtendedModel) -> FloatArray:
+def _samples(batch: Batch, spectra: ComplexArray, model: Model) -> FloatArray:
     """A signal with lines (1, K) at the samples of the input, (L,)."""
     return np.asarray(batch.signal(spectra)[0, :: _finer(model)])
 
 
-def _held(
-    model: ExtendedModel, logged: Mapping[str, float], covariance_known: bool
-) -> tuple[ExtendedModel, tuple[LeftOut, ...]]:
+def _held(model: Model, logged: Mapping[str, float], covariance_known: bool) -> tuple[Model, tuple[LeftOut, ...]]:
     """The model without the effects that are left out, with the covariance of its parameters where that is known."""
     reasons = [_why_left_out(one.effect) for one in model.effects]
     quantities = {one.effect.quantity for one in model.effects if isinstance(one.effect, SecondVariable)} - {""}
     missing = sorted(quantities - set(logged))
     if missing:
         raise MisuseError(f"the model depends on {', '.join(missing)}; state the value of each", "logged")
-    covariance = model.covariance
-    if not model.effects and covariance is None:
-        size = model.base.plant_size
-        covariance = model.base.covariance[:size, :size]
-    known = ExtendedModel(model.base, model.effects, covariance if covariance_known else None)
+    known = replace(model, joint_covariance=model.known_covariance if covariance_known else None)
     left_out = tuple(LeftOut(one.effect, reason) for one, reason in zip(model.effects, reasons, strict=True) if reason)
     return with_only(known, [not reason for reason in reasons]), left_out
 
@@ -154,7 +149,7 @@ def _why_left_out(effect: Effect) -> str:
     return ""
 
 
-def _settled(model: ExtendedModel, batch: Batch, point: FloatArray) -> Flow:
+def _settled(model: Model, batch: Batch, point: FloatArray) -> Flow:
     where = f"at the operating point ({', '.join(f'{value:g}' for value in point)})"
     try:
         with np.errstate(all="ignore"):
@@ -164,7 +159,7 @@ def _settled(model: ExtendedModel, batch: Batch, point: FloatArray) -> Flow:
             f"{where} no steady state was found: the effects are too strong for this input; play it at a lower level",
             "input",
         ) from error
-    structure = model.base.structure
+    structure = model.structure
     poles = structure.poles(flow.setting.zeta)
     if not np.all(abs(poles) < 1 if structure.is_discrete else poles.real < 0):
         raise NoSteadyStateError(
@@ -176,7 +171,7 @@ def _settled(model: ExtendedModel, batch: Batch, point: FloatArray) -> Flow:
     return flow
 
 
-def _grown(model: ExtendedModel, batch: Batch) -> Flow:
+def _grown(model: Model, batch: Batch) -> Flow:
     """The response; where the forces of effects are too strong at once, they grow from a part to the whole."""
     share, step, core = 0.0, 1.0, None
     while True:
@@ -192,7 +187,7 @@ def _grown(model: ExtendedModel, batch: Batch) -> Flow:
             return flow
 
 
-def _with_forces(model: ExtendedModel, share: float) -> ExtendedModel:
+def _with_forces(model: Model, share: float) -> Model:
     effects = [
         replace(one, coefficients=share * one.coefficients) if isinstance(one.effect, Feedback) else one
         for one in model.effects
@@ -200,7 +195,7 @@ def _with_forces(model: ExtendedModel, share: float) -> ExtendedModel:
     return replace(model, effects=tuple(effects))
 
 
-def _require_mean_known(model: ExtendedModel, flow: Flow, where: str) -> None:
+def _require_mean_known(model: Model, flow: Flow, where: str) -> None:
     """Raises MisuseError where a mean value acts on effects such as an integrator or diffusion."""
     if abs(flow.drive[0, 0]) <= NEGLIGIBLE * np.linalg.norm(flow.drive):
         return
@@ -226,14 +221,14 @@ def _jumps_at_zero(one: PlacedEffect, flow: Flow) -> bool:
     return bool(abs(near - still) > 1e-3 * abs(lowest))
 
 
-def _deviation(model: ExtendedModel, batch: Batch, flow: Flow) -> FloatArray | None:
+def _deviation(model: Model, batch: Batch, flow: Flow) -> FloatArray | None:
     """The root of the variance of the output (L,), from central differences of the simulation."""
-    assert model.covariance is not None
-    further = [np.zeros(model.base.plant_size)]
+    assert model.joint_covariance is not None
+    further = [np.zeros(model.plant_size)]
     further += [np.concatenate([np.zeros(one.size), 1 / one.effect.values()]) for one in model.effects]
     relative = np.concatenate(further)
     variance = np.zeros(len(_samples(batch, flow.output, model)))
-    for direction in covariance_root(model.covariance).T:
+    for direction in covariance_root(model.joint_covariance).T:
         size = STEP / max(1.0, float(abs(direction * relative).max()))
         try:
             up, down = (

@@ -18,7 +18,8 @@ from identification.lpv.stacking import (
     stacked_points,
     whitener,
 )
-from identification.models import LpvModel, RationalStructure
+from identification.models.model import Model
+from identification.models.rational import RationalStructure
 from identification.outcome import Outcome, TestResult
 from identification.scheduling import ParameterDependence
 from identification.signals import FrequencyResponse, Measurement, require_one_channel
@@ -43,7 +44,7 @@ class GeneralisedLeastSquares:
         dependence: ParameterDependence,
         experiments: Sequence[Measurement],
         local: Sequence[LocalEstimate],
-        prior: LpvModel | None = None,
+        prior: Model | None = None,
     ) -> LpvEstimate:
         """The parameter-varying model of M experiments and their local estimates, in the same order.
 
@@ -60,7 +61,7 @@ class GeneralisedLeastSquares:
         stack = _stack(transfer, local, prior)
         theta, covariance = stack.solve()
         noise_variance = float(np.mean([estimate.model.noise_variance for estimate in local]))
-        model = LpvModel(structure, dependence, theta, covariance, noise_variance)
+        model = Model(structure, dependence, theta, covariance, noise_variance)
         tests = (stack.overall(theta), *_by_coefficient(structure, dependence, points, local), *stack.by_point(theta))
         return LpvEstimate(model, _outcome(model, points, experiments), tests, tuple(local))
 
@@ -120,7 +121,7 @@ class _Stack:
         return tuple(tests)
 
 
-def _stack(transfer: FloatArray, local: Sequence[LocalEstimate], prior: LpvModel | None) -> _Stack:
+def _stack(transfer: FloatArray, local: Sequence[LocalEstimate], prior: Model | None) -> _Stack:
     roots = [_root(estimate) for estimate in local]
     prior_part, prior_values = prior_rows(prior, transfer.shape[-1])
     rows = np.concatenate([*(root @ matrix for root, matrix in zip(roots, transfer, strict=True)), prior_part])
@@ -191,7 +192,7 @@ def _by_coefficient(
     return tuple(tests)
 
 
-def _outcome(model: LpvModel, points: FloatArray, experiments: Sequence[Measurement]) -> Outcome:
+def _outcome(model: Model, points: FloatArray, experiments: Sequence[Measurement]) -> Outcome:
     unstable = instability_advice(model.structure, model.coefficients(points), points)
     if unstable:
         return Outcome("infeasible", unstable, 1)

@@ -18,7 +18,8 @@ from identification.lpv.joint_tests import joint_tests
 from identification.lpv.pooled_start import pooled_starts, shrunk_zeros
 from identification.lpv.stacking import asymptotics_advice, stacked_points
 from identification.lti.multistart import lowest_minimum
-from identification.models import LpvModel, RationalStructure
+from identification.models.model import Model
+from identification.models.rational import RationalStructure
 from identification.outcome import Outcome
 from identification.scheduling import ParameterDependence
 from identification.signals import FrequencyResponse, Measurement, TimeRecord
@@ -66,7 +67,7 @@ class JointLikelihood:
         dependence: ParameterDependence,
         experiments: Sequence[Measurement],
         local: Sequence[LocalEstimate] = (),
-        prior: LpvModel | None = None,
+        prior: Model | None = None,
     ) -> LpvEstimate:
         """The parameter-varying model of M experiments; local estimates, as many as there are, only help to start.
 
@@ -93,7 +94,7 @@ class JointLikelihood:
         outcome = _outcome(solution, residuals, variances)
         determined = outcome.status != "not_identifiable"
         covariance = solution.covariance if determined else np.full((dependence.size, dependence.size), np.inf)
-        model = LpvModel(structure, dependence, solution.x, covariance, residuals.reported_variance(variances))
+        model = Model(structure, dependence, solution.x, covariance, residuals.reported_variance(variances))
         tests = joint_tests(residuals, solution) if determined else ()
         return LpvEstimate(model, outcome, tests, tuple(local))
 
@@ -141,7 +142,7 @@ def _starts(
     dependence: ParameterDependence,
     experiments: Sequence[Measurement],
     local: Sequence[LocalEstimate],
-    prior: LpvModel | None,
+    prior: Model | None,
     transfer: FloatArray,
 ) -> Iterator[list[FloatArray]]:
     quick = [] if prior is None else [prior.theta]
@@ -164,7 +165,7 @@ def _of_kind(structure: RationalStructure, experiment: Measurement) -> Measureme
 
 
 def _require_information(
-    structure: RationalStructure, transfer: FloatArray, experiments: Sequence[Measurement], prior: LpvModel | None
+    structure: RationalStructure, transfer: FloatArray, experiments: Sequence[Measurement], prior: Model | None
 ) -> None:
     for experiment in experiments:
         require_same_sampling(structure, experiment)

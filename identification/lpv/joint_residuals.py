@@ -12,7 +12,8 @@ from identification.initial_conditions import InitialConditions, errors_from, fr
 from identification.least_squares import LeastSquaresSolution
 from identification.likelihood import prediction_errors, response_errors
 from identification.lpv.stacking import prior_rows
-from identification.models import LpvModel, RationalStructure
+from identification.models.model import Model
+from identification.models.rational import RationalStructure
 from identification.response_tests import real_count, variance_inflation
 from identification.signals import FrequencyResponse, Measurement, TimeRecord
 
@@ -29,7 +30,7 @@ class JointResiduals:
     structure: RationalStructure
     transfer: FloatArray
     experiments: tuple[Measurement, ...]
-    prior: LpvModel | None
+    prior: Model | None
     initial: InitialConditions
     common: bool
     relative: bool

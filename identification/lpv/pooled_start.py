@@ -9,7 +9,7 @@ from identification.arrays import ComplexArray, FloatArray
 from identification.filtering import lfilter
 from identification.likelihood import delayed
 from identification.lti.box_jenkins_start import autoregression, disturbance, high_order_model, reflected
-from identification.models import RationalStructure
+from identification.models.rational import RationalStructure
 from identification.signals import FrequencyResponse, Measurement, TimeRecord
 
 ONE = np.ones(1)

@@ -7,7 +7,8 @@ from scipy.linalg import cho_factor, solve_triangular
 
 from identification.arrays import FloatArray
 from identification.errors import MisuseError, NotIdentifiableError, ShapeError
-from identification.models import LpvModel, RationalStructure
+from identification.models.model import Model
+from identification.models.rational import RationalStructure
 from identification.scheduling import ParameterDependence
 from identification.signals import Measurement, OperatingPoint
 
@@ -16,7 +17,7 @@ def stacked_points(
     structure: RationalStructure,
     dependence: ParameterDependence,
     experiments: Sequence[Measurement],
-    prior: LpvModel | None,
+    prior: Model | None,
 ) -> FloatArray:
     """The operating points of the experiments (M, s), checked.
 
@@ -54,7 +55,7 @@ def whitener(covariance: FloatArray) -> FloatArray:
     return np.asarray(solve_triangular(np.tril(factor), np.diag(1 / deviations), lower=True))
 
 
-def prior_rows(prior: LpvModel | None, size: int) -> tuple[FloatArray, FloatArray]:
+def prior_rows(prior: Model | None, size: int) -> tuple[FloatArray, FloatArray]:
     """(S, S θ̂_1) with P_θ1⁻¹ = SᵀS: what an earlier estimate adds as white rows, none without one [Ghosh2018, (13)]."""
     if prior is None:
         return np.zeros((0, size)), np.zeros(0)

@@ -9,7 +9,7 @@ from scipy.linalg import qr
 from identification.arrays import FloatArray
 from identification.filtering import lfilter
 from identification.likelihood import delayed
-from identification.models import RationalStructure, roots
+from identification.models.rational import RationalStructure, roots
 from identification.signals import TimeRecord
 
 ONE = np.ones(1)

@@ -19,7 +19,8 @@ from identification.least_squares import LeastSquaresSolution
 from identification.likelihood import delayed, require_same_sampling
 from identification.lti.box_jenkins_start import waves
 from identification.lti.multistart import lowest_minimum
-from identification.models import LocalModel, RationalStructure
+from identification.models.model import LocalModel
+from identification.models.rational import RationalStructure
 from identification.outcome import Outcome, TestResult
 from identification.signals import TimeRecord
 from identification.whiteness import input_independence, whiteness

@@ -10,7 +10,8 @@ from identification.errors import MisuseError, NotIdentifiableError, RangeError
 from identification.estimates import LocalEstimate
 from identification.least_squares import LeastSquaresSolution, levenberg_marquardt
 from identification.likelihood import require_same_sampling, response_errors
-from identification.models import LocalModel, RationalStructure
+from identification.models.model import LocalModel
+from identification.models.rational import RationalStructure
 from identification.outcome import Outcome
 from identification.rational_basis import LinearProblem, frequency_scale, rescale
 from identification.rational_start import linear_starts

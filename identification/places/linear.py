@@ -10,7 +10,7 @@ from typing import ClassVar
 import numpy as np
 
 from identification.arrays import ComplexArray, FloatArray
-from identification.models import RationalStructure
+from identification.models.rational import RationalStructure
 from identification.places.place import Effect, Flow, Setting
 
 STEP = 1e-4

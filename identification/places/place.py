@@ -11,7 +11,7 @@ import numpy as np
 
 from identification.arrays import ComplexArray, FloatArray
 from identification.comparison.batch import Batch
-from identification.models import RationalStructure
+from identification.models.rational import RationalStructure
 
 Quantity = Literal["frequency", "time", "input", "output", "velocity", "number"]
 

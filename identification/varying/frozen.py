@@ -1,6 +1,6 @@
 """An affine state-space model with its scheduling held still, as a model that is compared and diagnosed like others."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -11,10 +11,11 @@ from identification.affine_state_space import AffineStateSpace
 from identification.arrays import BoolArray, ComplexArray, FloatArray
 from identification.bases.polynomial import Polynomial
 from identification.errors import MisuseError
-from identification.extension.model import ExtendedModel, PlacedEffect
-from identification.models import LpvModel, RationalStructure
+from identification.models.model import Model
+from identification.models.rational import RationalStructure
 from identification.outcome import Outcome
 from identification.places.linear import Coefficient
+from identification.places.placed import PlacedEffect
 from identification.scheduling import Numbers, ParameterDependence, ProductBasis
 from identification.varying.affine_parameters import AffineSizes
 
@@ -173,9 +174,7 @@ def _symmetric_unit(n: int, i: int, k: int) -> FloatArray:
     return unit
 
 
-def frozen(
-    estimate: AffineEstimate, effects: tuple[PlacedEffect, ...] = (), joint: FloatArray | None = None
-) -> ExtendedModel:
+def frozen(estimate: AffineEstimate, effects: tuple[PlacedEffect, ...] = (), joint: FloatArray | None = None) -> Model:
     """The model of an estimate with one input and output, its scheduling held still, its parameters δ, θ = Q δ.
 
     `joint`: the covariance of θ and the parameters of the `effects` together, None when it is not known. Raises
@@ -204,22 +203,22 @@ def frozen(
     inner = chart.T @ _turning(sizes, basis)
     known = estimate.covariance
     covariance = np.zeros((sizes.free, sizes.free)) if known is None else inner @ known @ inner.T
-    base = LpvModel(
+    base = Model(
         FrozenStructure.of(sizes.order, model.sample_time), dependence, chart.T @ theta, covariance, noise_variance=1.0
     )
     if not effects:
-        return ExtendedModel(base, (), None if known is None else covariance)
-    return ExtendedModel(base, effects, None if joint is None else _on_both_sides(inner, joint))
+        return replace(base, joint_covariance=None if known is None else covariance)
+    return replace(base, effects=effects, joint_covariance=None if joint is None else _on_both_sides(inner, joint))
 
 
-def affine_estimate(model: ExtendedModel) -> tuple[AffineEstimate, FloatArray | None]:
+def affine_estimate(model: Model) -> tuple[AffineEstimate, FloatArray | None]:
     """The affine model that `frozen` made this one of, as it is now, and the joint covariance of θ and the effects."""
-    dependence, structure = model.base.dependence, model.base.structure
+    dependence, structure = model.dependence, model.structure
     assert isinstance(dependence, ChartedDependence), "made by `frozen`"
     chart = np.array(dependence.chart)
     sizes = AffineSizes(structure.n_a, len(dependence.variables), 1, 1)
-    affine = sizes.model(chart @ model.base.theta, structure.sample_time or 0.0, dependence.variables)
-    joint = None if model.covariance is None else _on_both_sides(chart, model.covariance)
+    affine = sizes.model(chart @ model.theta, structure.sample_time or 0.0, dependence.variables)
+    joint = None if model.joint_covariance is None else _on_both_sides(chart, model.joint_covariance)
     covariance = None if joint is None else joint[: sizes.size, : sizes.size]
     return AffineEstimate(affine, Outcome("converged"), (), covariance), joint
 

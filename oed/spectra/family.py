@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from identification.arrays import BoolArray, FloatArray, IntArray
 from identification.comparison.batch import Batch
-from identification.extension.model import ExtendedModel
+from identification.models.model import Model
 from oed.subject import Subject
 
 NEARLY = 0.97
@@ -105,6 +105,6 @@ class SpectrumFamily(Protocol):
         """Prepare the family at the operating points (M, s), limited to a band (rad/s) where the family can be."""
 
     def reference(
-        self, model: ExtendedModel, points: ArrayLike, band: tuple[float, float] | None, sample_time: float
+        self, model: Model, points: ArrayLike, band: tuple[float, float] | None, sample_time: float
     ) -> tuple[Batch, ...]:
         """Experiments of the family without preference, for models to be fitted to each other; outputs zero."""

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from identification.arrays import FloatArray, IntArray
 from identification.comparison.batch import Batch
 from identification.errors import RangeError
-from identification.extension.model import ExtendedModel
+from identification.models.model import Model
 from oed.hypothesis import response_batch
 from oed.spectra.family import NEARLY, Block, Offer, foremost
 from oed.subject import Subject
@@ -76,10 +76,10 @@ class FirSpectra:
         return FirPricing(subject.moments(points, self.degree, sample_time), sample_time)
 
     def reference(
-        self, model: ExtendedModel, points: ArrayLike, band: tuple[float, float] | None, sample_time: float
+        self, model: Model, points: ArrayLike, band: tuple[float, float] | None, sample_time: float
     ) -> tuple[Batch, ...]:
         """The same energy on frequencies up to the Nyquist frequency, at every point."""
-        return (response_batch(model.base, points, np.linspace(0, np.pi / sample_time, REFERENCE)),)
+        return (response_batch(model, points, np.linspace(0, np.pi / sample_time, REFERENCE)),)
 
     @classmethod
     def example(cls) -> "FirSpectra":

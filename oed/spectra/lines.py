@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from identification.arrays import ComplexArray, FloatArray, IntArray
 from identification.comparison.batch import Batch
 from identification.errors import RangeError
-from identification.extension.model import ExtendedModel
+from identification.models.model import Model
 from oed.hypothesis import response_batch
 from oed.spectra.family import NEARLY, Block, Offer, foremost
 from oed.subject import Subject
@@ -76,11 +76,11 @@ class LineSpectra:
         return LinePricing(frequencies, indices, self.samples, sensitivities, subject.mask)
 
     def reference(
-        self, model: ExtendedModel, points: ArrayLike, band: tuple[float, float] | None, sample_time: float
+        self, model: Model, points: ArrayLike, band: tuple[float, float] | None, sample_time: float
     ) -> tuple[Batch, ...]:
         """The same energy on lines all over the band, at every point."""
         frequencies = self._lines(band, sample_time)[1]
-        return (response_batch(model.base, points, frequencies[:: 1 + len(frequencies) // MOST_REFERENCE]),)
+        return (response_batch(model, points, frequencies[:: 1 + len(frequencies) // MOST_REFERENCE]),)
 
     def _lines(self, band: tuple[float, float] | None, sample_time: float) -> tuple[IntArray, FloatArray]:
         indices = np.arange(self.samples // 2 + 1)

@@ -11,8 +11,7 @@ from numpy.typing import ArrayLike
 from identification.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from identification.comparison.batch import EVEN, EXCITED, ODD, Batch
 from identification.errors import RangeError
-from identification.extension.model import ExtendedModel
-from identification.models import LpvModel
+from identification.models.model import Model
 from identification.places.simulate import NoSteadyStateError
 from oed.hypothesis import noise_variances
 from oed.spectra.family import NEARLY, Block, Offer, foremost
@@ -103,7 +102,7 @@ class Multisines:
         self, subject: Subject, points: ArrayLike, band: tuple[float, float] | None, sample_time: float
     ) -> "MultisinePricing":
         """Simulate every candidate at the operating points (M, s) that has a steady state there."""
-        p = subject.base.dependence.points(points)
+        p = subject.model.dependence.points(points)
         self._check_size(len(p))
         signals = self.signals(band, sample_time)
         information, steady = _informations(subject, p, signals, sample_time)
@@ -114,15 +113,15 @@ class Multisines:
         return MultisinePricing(tuple(signals), numbers, places, energies, per_energy)
 
     def reference(
-        self, model: ExtendedModel, points: ArrayLike, band: tuple[float, float] | None, sample_time: float
+        self, model: Model, points: ArrayLike, band: tuple[float, float] | None, sample_time: float
     ) -> tuple[Batch, ...]:
         """The signals over the whole band at the middle level, one period each, at every point."""
-        self._check_size(len(model.base.dependence.points(points)))
+        self._check_size(len(model.dependence.points(points)))
         signals = self.signals(band, sample_time)
         level = sorted(self.levels)[len(self.levels) // 2]
         own = [one for one in signals if abs(one.level / level - 1) < 1e-9] or signals
         widest = max(own, key=lambda one: len(one.indices))
-        return (record_batch(model.base, model.base.dependence.points(points), widest, sample_time),)
+        return (record_batch(model, model.dependence.points(points), widest, sample_time),)
 
     def signals(self, band: tuple[float, float] | None, sample_time: float) -> list[MultisineSpectrum]:
         """Every draw in every band at every level, the lowest level first."""
@@ -184,7 +183,7 @@ def _parts(band: tuple[float, float]) -> list[tuple[float, float]]:
     return [(float(a), float(b)) for edges in ends for a, b in pairwise(edges)]
 
 
-def record_batch(model: LpvModel, points: FloatArray, signal: MultisineSpectrum, sample_time: float) -> Batch:
+def record_batch(model: Model, points: FloatArray, signal: MultisineSpectrum, sample_time: float) -> Batch:
     """One period of a multisine at each operating point (M, s), compared at all lines of the period, outputs zero."""
     period = signal.period()
     lines = np.fft.rfft(period) / signal.samples
@@ -214,11 +213,11 @@ def _informations(
     steady = np.ones((len(points), len(signals)), dtype=np.bool_)
     for c, signal in enumerate(signals):
         try:
-            information[:, c] = subject.by_record(record_batch(subject.base, points, signal, sample_time))
+            information[:, c] = subject.by_record(record_batch(subject.model, points, signal, sample_time))
         except NoSteadyStateError:
             for m in range(len(points)):
                 try:
-                    batch = record_batch(subject.base, points[m : m + 1], signal, sample_time)
+                    batch = record_batch(subject.model, points[m : m + 1], signal, sample_time)
                     information[m, c] = subject.by_record(batch)[0]
                 except NoSteadyStateError:
                     steady[m, c] = False

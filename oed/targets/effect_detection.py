@@ -8,9 +8,9 @@ import numpy as np
 
 from identification.comparison.batch import Batch
 from identification.errors import RangeError
-from identification.extension.model import ExtendedModel, placed
-from identification.models import LpvModel
+from identification.models.model import Model
 from identification.places.place import Effect
+from identification.places.placed import placed
 from oed.decisions import Demand, ErrorRates
 from oed.hypothesis import Hypothesis
 from oed.suspects import named
@@ -42,7 +42,7 @@ class EffectDetection:
         if effect.sign * self.amplitude < 0:
             raise RangeError(f"the amplitude of {effect.title} cannot have this sign", "amplitude")
 
-    def demands(self, model: ExtendedModel, reference: Sequence[Batch], measured: bool) -> tuple[Demand, ...]:
+    def demands(self, model: Model, reference: Sequence[Batch], measured: bool) -> tuple[Demand, ...]:
         """One hypothesis: the model with this effect at amplitude zero, or the model itself when it carries it."""
         effect = named(self.effect, self.parameters)
         rates = ErrorRates(self.power, self.level, effect.shapes, effect.shapes == 1 and effect.sign != 0)
@@ -55,14 +55,14 @@ class EffectDetection:
         return (Demand(Hypothesis(model, suspected=one), judged, self.amplitude, rates, self.effect),)
 
     @classmethod
-    def example(cls, model: LpvModel) -> "EffectDetection":
+    def example(cls, model: Model) -> "EffectDetection":
         """A delay of a tenth of a second, for the conformance tests."""
         return cls("delay", 0.1)
 
 
-def _place_in(model: ExtendedModel, effect: Effect) -> slice | None:
+def _place_in(model: Model, effect: Effect) -> slice | None:
     """Where the first amplitude coefficients of an effect of this kind stand among the parameters of the model."""
-    start = model.base.plant_size
+    start = model.plant_size
     for one in model.effects:
         if one.effect.kind == effect.kind:
             return slice(start, start + one.size)

@@ -8,8 +8,7 @@ import numpy as np
 
 from identification.comparison.batch import Batch
 from identification.errors import RangeError
-from identification.extension.model import ExtendedModel
-from identification.models import LpvModel
+from identification.models.model import Model
 from identification.places.place import Effect
 from oed.decisions import Demand, ErrorRates
 from oed.hypothesis import Hypothesis
@@ -52,7 +51,7 @@ class EffectDiscrimination:
             raise RangeError("an effect cannot be told from itself", "against")
         known(self.against, "against")
 
-    def demands(self, model: ExtendedModel, reference: Sequence[Batch], measured: bool) -> tuple[Demand, ...]:
+    def demands(self, model: Model, reference: Sequence[Batch], measured: bool) -> tuple[Demand, ...]:
         """One hypothesis a way: the model with the wrong effect, and the right one as its rival.
 
         `reference`: experiments in which the two effects are made alike; `measured` says that these were done.
@@ -72,11 +71,11 @@ class EffectDiscrimination:
         return known(self.effect, "effect") if self.amplitude is None else named(self.effect, self.parameters)
 
     @classmethod
-    def example(cls, model: LpvModel) -> "EffectDiscrimination":
+    def example(cls, model: Model) -> "EffectDiscrimination":
         """A delay of half a second and a lag, for the conformance tests."""
         return cls("delay", "lag", 0.5)
 
 
-def _rejected(wrong: ExtendedModel, right: ExtendedModel, rates: ErrorRates, kind: str, against: str) -> Demand:
+def _rejected(wrong: Model, right: Model, rates: ErrorRates, kind: str, against: str) -> Demand:
     place = len(wrong.parameters)
     return Demand(Hypothesis(wrong, rival=right), slice(place, place + 1), 1.0, rates, kind, against)

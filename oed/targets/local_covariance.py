@@ -7,7 +7,7 @@ import numpy as np
 
 from identification.arrays import FloatArray
 from identification.errors import RangeError, ShapeError
-from identification.models import LpvModel
+from identification.models.model import Model
 
 
 @dataclass(frozen=True)
@@ -24,7 +24,7 @@ class LocalCovariance:
     operating_points: Annotated[tuple[tuple[float, ...], ...], "one row of scheduling variables a point"]
     covariance: Annotated[tuple[tuple[float, ...], ...], "Σ, rows of the largest covariance of ζ(p)"]
 
-    def matrices(self, model: LpvModel) -> FloatArray:
+    def matrices(self, model: Model) -> FloatArray:
         """R_j (J, k, k), one per operating point; raises ShapeError and RangeError."""
         structure = model.structure
         sigma = np.array(self.covariance, dtype=np.float64) if _square(self.covariance) else np.zeros((0, 0))
@@ -43,7 +43,7 @@ class LocalCovariance:
         return np.asarray(np.swapaxes(transfer, 1, 2) @ np.linalg.inv(sigma) @ transfer)
 
     @classmethod
-    def example(cls, model: LpvModel) -> "LocalCovariance":
+    def example(cls, model: Model) -> "LocalCovariance":
         """One per cent of each coefficient in the middle of the range, for the conformance tests."""
         middle = tuple((v.minimum + v.maximum) / 2 for v in model.dependence.variables)
         zeta = model.coefficients([middle])[0]

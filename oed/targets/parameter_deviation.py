@@ -7,7 +7,7 @@ import numpy as np
 
 from identification.arrays import FloatArray
 from identification.errors import RangeError, ShapeError
-from identification.models import LpvModel
+from identification.models.model import Model
 
 
 @dataclass(frozen=True)
@@ -24,7 +24,7 @@ class ParameterDeviation:
     standard_deviations: Annotated[tuple[float | None, ...], "σ_i of each parameter, in its unit; null for none"]
     jointly: Annotated[bool, "all parameters at once, as an ellipsoid"] = True
 
-    def matrices(self, model: LpvModel) -> FloatArray:
+    def matrices(self, model: Model) -> FloatArray:
         """R (1, k, k) or one per parameter (J, k, k); raises ShapeError and RangeError."""
         k = model.dependence.size
         if len(self.standard_deviations) != k:
@@ -44,6 +44,6 @@ class ParameterDeviation:
         return single.sum(axis=0, keepdims=True) if self.jointly else single
 
     @classmethod
-    def example(cls, model: LpvModel) -> "ParameterDeviation":
+    def example(cls, model: Model) -> "ParameterDeviation":
         """One per cent of each parameter, for the conformance tests."""
         return cls(tuple(0.01 * max(abs(value), 1.0) for value in model.theta))

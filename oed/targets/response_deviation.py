@@ -7,7 +7,7 @@ import numpy as np
 
 from identification.arrays import FloatArray
 from identification.errors import RangeError
-from identification.models import LpvModel
+from identification.models.model import Model
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,7 @@ class ResponseDeviation:
     relative: Annotated[bool, "the standard deviation is a share of |G|"] = True
     count: Annotated[int, "number of frequencies in the band"] = 20
 
-    def matrices(self, model: LpvModel) -> FloatArray:
+    def matrices(self, model: Model) -> FloatArray:
         """R_j (J, k, k), one per operating point and frequency; raises RangeError."""
         self._check(model)
         lower = self.minimum_rad_per_second
@@ -49,7 +49,7 @@ class ResponseDeviation:
     def _linear(self) -> FloatArray:
         return np.linspace(self.minimum_rad_per_second, self.maximum_rad_per_second, self.count)
 
-    def _check(self, model: LpvModel) -> None:
+    def _check(self, model: Model) -> None:
         if not (self.standard_deviation > 0 and np.isfinite(self.standard_deviation)):
             raise RangeError("the standard deviation must be positive", "standard_deviation")
         if not 0 <= self.minimum_rad_per_second <= self.maximum_rad_per_second:
@@ -63,7 +63,7 @@ class ResponseDeviation:
             )
 
     @classmethod
-    def example(cls, model: LpvModel) -> "ResponseDeviation":
+    def example(cls, model: Model) -> "ResponseDeviation":
         """Five per cent in the middle of the range, for the conformance tests."""
         middle = tuple((v.minimum + v.maximum) / 2 for v in model.dependence.variables)
         return cls((middle,), 0.05, 1.0, 0.05, count=5)

@@ -7,7 +7,7 @@ import pytest
 
 from app.files import csv_file, mat_writer, npz_file
 from identification.arrays import FloatArray
-from identification.models import RationalStructure
+from identification.models.rational import RationalStructure
 from identification.simulation import simulate
 from tests.support.api import Api, Json
 from tests.support.paper import DEVIATIONS, FIGURES, PLANT, THETA, Figure, fir, played, prepared

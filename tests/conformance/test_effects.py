@@ -13,8 +13,8 @@ from identification.effects.rc_arc import RcArc
 from identification.effects.resonance import Resonance
 from identification.effects.second_variable import SecondVariable
 from identification.extension.fit import differences, fit
-from identification.extension.model import placed
 from identification.extension.rows import Rows, effect_tangents
+from identification.places.placed import placed
 from tests.support.oscillators import MODEL, batches
 
 BATCHES = batches(11)

@@ -6,7 +6,8 @@ import pytest
 from identification.along import simulate_rational, simulate_state_space
 from identification.bases.polynomial import Polynomial
 from identification.errors import MisuseError, RangeError
-from identification.models import LpvModel, RationalStructure
+from identification.models.model import Model
+from identification.models.rational import RationalStructure
 from identification.parameter_varying import ParameterVaryingStateSpace
 from identification.scheduling import ParameterDependence, ProductBasis, SchedulingVariable
 from identification.simulation import simulate
@@ -17,12 +18,12 @@ AFFINE = ProductBasis((Polynomial(1),))
 SAMPLES = 200
 
 
-def model(n_k: int = 1, **changes: object) -> LpvModel:
+def model(n_k: int = 1, **changes: object) -> Model:
     structure = RationalStructure(**{"n_a": 2, "n_b": 1, "n_k": n_k, "n_d": 1, "sample_time": 0.5, **changes})
     dependence = ParameterDependence((VARIABLE,), (AFFINE,) * structure.size)
     theta = np.array([-0.9, 0.2, 0.3, -0.1, 1.0, 0.4, 0.5, -0.2, -0.5, 0.1])[: dependence.size]
     root = 0.01 * np.random.default_rng(1).standard_normal((dependence.size,) * 2)
-    return LpvModel(structure, dependence, theta, root @ root.T, 1.0)
+    return Model(structure, dependence, theta, root @ root.T, 1.0)
 
 
 def signals(seed: int = 2) -> tuple[np.ndarray, np.ndarray]:
@@ -58,9 +59,7 @@ def test_the_deviation_is_that_of_the_parameters_to_first_order() -> None:
         step = np.zeros(len(one.theta))
         step[k] = 1e-6
         up, down = (
-            simulate_rational(
-                LpvModel(one.structure, one.dependence, one.theta + sign * step, one.covariance, 1.0), u, p
-            )
+            simulate_rational(Model(one.structure, one.dependence, one.theta + sign * step, one.covariance, 1.0), u, p)
             for sign in (1, -1)
         )
         gradient[:, k] = (up.output - down.output)[:, 0] / 2e-6
@@ -86,7 +85,7 @@ def test_misuse_is_refused() -> None:
     one, (u, p) = model(), signals()
     with pytest.raises(RangeError, match="outside its range"):
         simulate_rational(one, u, 2 * p)
-    long, unstable = np.ones(5000), LpvModel(one.structure, one.dependence, 3 * one.theta, one.covariance, 1.0)
+    long, unstable = np.ones(5000), Model(one.structure, one.dependence, 3 * one.theta, one.covariance, 1.0)
     with pytest.raises(RangeError, match="unstable along"):
         simulate_rational(unstable, long, 0 * long[:, None])
     with pytest.raises(MisuseError, match="delay"):

@@ -6,7 +6,7 @@ import pytest
 
 from identification.control_objects import from_transfer_function, to_transfer_function
 from identification.errors import MisuseError, RangeError
-from identification.models import RationalStructure
+from identification.models.rational import RationalStructure
 
 CASES = [
     (RationalStructure(2, 1, 1, sample_time=0.1), [-1.2, 0.5, 1.0, 0.4]),

@@ -7,7 +7,7 @@ import pytest
 
 from identification.errors import MisuseError
 from identification.inspection import find_period, inspect
-from identification.models import RationalStructure
+from identification.models.rational import RationalStructure
 from identification.signals import FrequencyResponse, TimeRecord
 from identification.simulation import simulate
 

@@ -6,7 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from identification.errors import RangeError, ShapeError
-from identification.models import LpvModel, RationalStructure, roots
+from identification.models.model import Model
+from identification.models.rational import RationalStructure, roots
 from tests.support.plants import DEPENDENCE, EXAMPLE, THETA, zeta_of_example
 
 STRUCTURES = [
@@ -107,7 +108,7 @@ def test_bad_structures(options):
 
 
 def test_the_example_at_its_operating_points():
-    model = LpvModel(EXAMPLE, DEPENDENCE, THETA, np.eye(6), 0.5)
+    model = Model(EXAMPLE, DEPENDENCE, THETA, np.eye(6), 0.5)
     points = [[0.0], [1.5], [8.0]]
     assert np.allclose(model.coefficients(points), [zeta_of_example(p[0]) for p in points])
     assert model.parameter_names == ("a1[0]", "a1[1]", "b0[0]", "b0[1]", "d1[0]", "d1[1]")
@@ -118,7 +119,7 @@ def test_the_example_at_its_operating_points():
 def test_response_covariance_is_that_of_many_draws():
     g = np.random.default_rng(0)
     root = 1e-3 * g.standard_normal((6, 6))
-    model = LpvModel(EXAMPLE, DEPENDENCE, THETA, root @ root.T, 0.5)
+    model = Model(EXAMPLE, DEPENDENCE, THETA, root @ root.T, 0.5)
     omega = np.array([0.2, 1.0])
     draws = THETA + (root @ g.standard_normal((6, 20000))).T
     zeta = draws @ DEPENDENCE.matrix([[4.0]])[0].T
@@ -133,6 +134,6 @@ def test_response_covariance_is_that_of_many_draws():
 def test_sizes_of_a_parameter_varying_model():
     for theta, covariance in ((np.zeros(5), np.eye(6)), (np.zeros(6), np.eye(5))):
         with pytest.raises(ShapeError):
-            LpvModel(EXAMPLE, DEPENDENCE, theta, covariance, 1.0)
+            Model(EXAMPLE, DEPENDENCE, theta, covariance, 1.0)
     with pytest.raises(ShapeError):
-        LpvModel(RationalStructure(2, 0, sample_time=1.0), DEPENDENCE, THETA[:4], np.eye(4), 1.0).coefficients([[0.0]])
+        Model(RationalStructure(2, 0, sample_time=1.0), DEPENDENCE, THETA[:4], np.eye(4), 1.0).coefficients([[0.0]])

@@ -7,7 +7,7 @@ import pytest
 
 from identification.errors import MisuseError
 from identification.lti.rational_fit import RationalFit, relative_error
-from identification.models import RationalStructure
+from identification.models.rational import RationalStructure
 from identification.signals import FrequencyResponse
 
 FIT = RationalFit(weighting="relative", relaxation=True)

@@ -6,7 +6,7 @@ import pytest
 from identification.errors import MisuseError, RangeError, ShapeError
 from identification.likelihood import residual_and_jacobian
 from identification.lti.rational_fit import RationalFit
-from identification.models import RationalStructure
+from identification.models.rational import RationalStructure
 from identification.rational_start import levy
 from identification.signals import FrequencyResponse, TimeRecord
 from identification.simulation import simulate

@@ -7,7 +7,7 @@ from scipy.signal import lfilter
 
 from identification.initial_conditions import errors_from
 from identification.lti.prediction_error import PredictionError
-from identification.models import RationalStructure
+from identification.models.rational import RationalStructure
 from identification.signals import TimeRecord
 from identification.whiteness import chi_square, input_independence, whiteness
 

@@ -10,7 +10,7 @@ from scipy.stats import ncx2, norm
 from identification.effects.delay import Delay
 from identification.effects.lag import Lag
 from identification.errors import MisuseError, RangeError
-from identification.extension.model import ExtendedModel, placed
+from identification.places.placed import placed
 from oed.budget import within_energy
 from oed.decisions import Demand, ErrorRates, conviction
 from oed.design import design
@@ -23,7 +23,7 @@ from oed.targets.effect_discrimination import EffectDiscrimination
 from oed.targets.parameter_deviation import ParameterDeviation
 from tests.support.oscillators import MODEL, SAMPLE_TIME
 
-PLANT = ExtendedModel(replace(MODEL.base, noise_variance=1e-4))
+PLANT = replace(MODEL, noise_variance=1e-4)
 POINTS = np.linspace(-1, 1, 5)[:, None]
 LINES = LineSpectra(128)
 SIGNALS = Multisines(128, (2.0, 6.0))
@@ -112,7 +112,7 @@ def test_the_designed_distance_is_what_is_left_after_the_best_imitation() -> Non
     parts = []
     for one in result.experiments:
         assert isinstance(one.spectrum, LineSpectrum)
-        batch = response_batch(PLANT.base, [one.operating_point], one.spectrum.frequencies)
+        batch = response_batch(PLANT, [one.operating_point], one.spectrum.frequencies)
         parts.append((batch, np.sqrt(one.spectrum.energies / 1e-4), truth.output(batch)))
     scale = np.abs(imitating.parameters)
 

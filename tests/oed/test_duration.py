@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from identification.bases.polynomial import Polynomial
-from identification.models import LpvModel
+from identification.models.model import Model
 from identification.scheduling import ProductBasis
 from oed.design import design
 from oed.duration import required_samples, supplementary_points
@@ -22,13 +22,13 @@ def test_the_largest_ratio_counts() -> None:
     assert required_samples(information[1:], np.array([np.diag([1.0, 1.0])])) == np.inf
 
 
-def curved_noise() -> LpvModel:
+def curved_noise() -> Model:
     """The example of the paper with a noise model that needs three operating points, its plant needing two."""
     model = paper_model()
     bases = (*model.dependence.bases[:2], ProductBasis((Polynomial(2),)))
     dependence = type(model.dependence)(model.dependence.variables, bases)
     theta = np.append(model.theta, 0.001)
-    return LpvModel(model.structure, dependence, theta, np.zeros((7, 7)), 0.5)
+    return Model(model.structure, dependence, theta, np.zeros((7, 7)), 0.5)
 
 
 def test_records_without_input_are_asked_for_where_the_noise_model_needs_them() -> None:

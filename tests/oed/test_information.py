@@ -7,7 +7,7 @@ import pytest
 
 from identification.errors import MisuseError
 from identification.likelihood import prediction_errors
-from identification.models import LpvModel
+from identification.models.model import Model
 from identification.signals import TimeRecord
 from identification.simulation import simulate
 from oed.information import noise_information, require_stable, sensitivity, sensitivity_moments
@@ -16,7 +16,7 @@ from tests.support.random_models import paper_model, random_model
 SEEDS = pytest.mark.parametrize("seed", range(6))
 
 
-def numerical_information(model: LpvModel, point: float, input: np.ndarray, repeats: int) -> np.ndarray:
+def numerical_information(model: Model, point: float, input: np.ndarray, repeats: int) -> np.ndarray:
     """Σ_t ψ ψᵀ / σ_e² for θ in the steady state of a periodic input, from the gradient of the prediction errors."""
     transfer = model.dependence.matrix([[point]])[0]
     zeta = transfer @ model.theta
@@ -121,7 +121,7 @@ def test_continuous_time_sensitivity_scales_with_the_noise() -> None:
     model = paper_model()
     structure = replace(model.structure, n_k=0, n_d=0, sample_time=None)
     dependence = replace(model.dependence, bases=model.dependence.bases[:2])
-    slow = LpvModel(structure, dependence, np.array([1.0, 0.0, 3.0, 0.0]), np.eye(4), 4.0)
+    slow = Model(structure, dependence, np.array([1.0, 0.0, 3.0, 0.0]), np.eye(4), 4.0)
     a = sensitivity(slow, [[0.0]], np.array([2.0]))[0, 0]
     assert a[2] == pytest.approx(1 / (2j + 1) / 2)
     assert a[0] == pytest.approx(-3 / (2j + 1) ** 2 / 2)

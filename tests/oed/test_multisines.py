@@ -9,7 +9,7 @@ import pytest
 from identification.arrays import FloatArray
 from identification.effects.quadratic_stiffness import QuadraticStiffness
 from identification.errors import MisuseError, RangeError
-from identification.extension.model import ExtendedModel, placed
+from identification.places.placed import placed
 from oed.design import Design, design
 from oed.information import noise_information
 from oed.problem import DesignProblem
@@ -20,7 +20,7 @@ from oed.targets.parameter_deviation import ParameterDeviation
 from tests.support.oscillators import MODEL, SAMPLE_TIME
 from tests.support.random_models import paper_model
 
-PLANT = ExtendedModel(replace(MODEL.base, noise_variance=1e-4))
+PLANT = replace(MODEL, noise_variance=1e-4)
 POINTS = np.linspace(-1, 1, 3)[:, None]
 FAMILY = Multisines(128, (1.0, 2.0, 6.0), ((0.4, 6.0), (4.0, 12.0), (0.4, 30.0)), seed=3)
 SEEN = EffectDetection("cubic_stiffness", 0.05)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from identification.errors import MisuseError, RangeError, ShapeError
-from identification.models import LpvModel
+from identification.models.model import Model
 from oed.targets.local_covariance import LocalCovariance
 from oed.targets.parameter_deviation import ParameterDeviation
 from oed.targets.response_deviation import ResponseDeviation
@@ -15,7 +15,7 @@ from tests.support.random_models import paper_model, random_model
 SEEDS = pytest.mark.parametrize("seed", range(5))
 
 
-def random_covariance(model: LpvModel, seed: int) -> np.ndarray:
+def random_covariance(model: Model, seed: int) -> np.ndarray:
     k, plant = model.dependence.size, model.plant_size
     rng = np.random.default_rng(seed)
     factor = rng.normal(size=(k, k)) * rng.uniform(0.2, 2, size=(k, 1))

@@ -5,8 +5,8 @@ from scipy.integrate import solve_ivp
 
 from identification.bases.polynomial import Polynomial
 from identification.comparison.gather import gather
-from identification.extension.model import ExtendedModel
-from identification.models import LpvModel, RationalStructure
+from identification.models.model import Model
+from identification.models.rational import RationalStructure
 from identification.scheduling import ParameterDependence, ProductBasis, SchedulingVariable
 from identification.signals import TimeRecord
 
@@ -17,7 +17,7 @@ DEPENDENCE = ParameterDependence(
     (SchedulingVariable("p", "1", -1.0, 1.0),), tuple(ProductBasis((Polynomial(n),)) for n in (0, 1, 0))
 )
 THETA = np.array([1.5, 30.0, 10.0, 1.0])
-MODEL = ExtendedModel(LpvModel(RationalStructure(2, 0), DEPENDENCE, THETA, 1e-12 * np.eye(4), 1.0))
+MODEL = Model(RationalStructure(2, 0), DEPENDENCE, THETA, 1e-12 * np.eye(4), 1.0)
 POINTS = (-1.0, -0.5, 0.0, 0.5, 1.0)
 
 

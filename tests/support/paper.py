@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from identification.arrays import FloatArray
-from identification.models import RationalStructure
+from identification.models.rational import RationalStructure
 from identification.simulation import simulate
 from tests.support.api import Api, Json
 

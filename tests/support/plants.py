@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from identification.bases.polynomial import Polynomial
-from identification.models import RationalStructure, roots
+from identification.models.rational import RationalStructure, roots
 from identification.scheduling import ParameterDependence, ProductBasis, SchedulingVariable
 from identification.signals import TimeRecord
 from identification.simulation import simulate

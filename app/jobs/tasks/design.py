@@ -25,12 +25,11 @@ from app.conversion.models import outcome_document, standard_deviations
 from app.conversion.spectra import curve, spectrum_document
 from app.jobs.task import TaskContext, TaskResult
 from app.schemas.designs import BindingDocument, Box, DesignedExperimentDocument, DesignRequest
-from app.schemas.models import Model
+from app.schemas.models import Model as ModelDocument
 from app.schemas.plants import Plant
 from identification.comparison.batch import Batch
 from identification.errors import MisuseError
-from identification.extension.model import ExtendedModel, require_matching
-from identification.models import LpvModel
+from identification.models.model import Model, require_matching
 from oed.design import Binding, Design, design
 from oed.problem import DecisionTarget, DesignProblem, Target
 
@@ -60,14 +59,14 @@ def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
     context.progress(0.02, "stating the problem")
     plant = Plant.model_validate(payload["plant"])
     request = DesignRequest.model_validate(payload["request"])
-    document = Model.model_validate(payload["model"])
+    document = ModelDocument.model_validate(payload["model"])
     model = extended_model(document, plant)
     if request.noise_variance is not None:
-        model = replace(model, base=replace(model.base, noise_variance=request.noise_variance))
+        model = replace(model, noise_variance=request.noise_variance)
     given = payload["experiments"]
     with field_named({}, "/priorExperimentIds"), within_doubles():
         experiments = kept_batches(given, context.arrays, True) if given else ()
-        require_matching(model.base, experiments)
+        require_matching(model, experiments)
     with field_named(FIELDS, "/operatingPoints"), within_doubles():
         problem = stated_problem(request, model, document.covariance is not None, experiments)
         found = design(problem, progress=_reporter(context, request.tolerance))
@@ -75,31 +74,30 @@ def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
 
 
 def stated_problem(
-    request: DesignRequest, model: ExtendedModel, covariance_known: bool, experiments: tuple[Batch, ...] = ()
+    request: DesignRequest, model: Model, covariance_known: bool, experiments: tuple[Batch, ...] = ()
 ) -> DesignProblem:
     """The problem of a request; raises MisuseError."""
     known = prior_information(model, covariance_known) if request.use_prior_information else None
-    base = searched_model(request, model.base)
-    searched = replace(model, base=base)
-    points = candidate_points(request, base.dependence)
+    model = searched_model(request, model)
+    points = candidate_points(request, model.dependence)
     band = request.band
     return DesignProblem(
-        model=searched,
+        model=model,
         points=points,
-        targets=_fitting_targets(request, base),
+        targets=_fitting_targets(request, model),
         family=request.spectrum_family.build(),
         samples=request.samples,
-        caps=energy_caps(request, points, base.dependence),
+        caps=energy_caps(request, points, model.dependence),
         prior_information=known,
         prior_experiments=experiments,
         band=None if band is None else (band.minimum_rad_per_second, band.maximum_rad_per_second),
-        sample_time=base.structure.sample_time or request.sample_time_seconds,
+        sample_time=model.structure.sample_time or request.sample_time_seconds,
         tolerance=request.tolerance,
         box=isinstance(request.operating_points, Box),
     )
 
 
-def _fitting_targets(request: DesignRequest, model: LpvModel) -> tuple[Target, ...]:
+def _fitting_targets(request: DesignRequest, model: Model) -> tuple[Target, ...]:
     targets = []
     for i, given in enumerate(request.targets):
         target: Target = given.build()
@@ -144,7 +142,7 @@ def _document(payload: dict[str, Any], problem: DesignProblem, found: Design) ->
         "gap": finite_or_none(found.gap),
         "samples": found.samples,
         "requiredSamples": finite_or_none(found.required_samples),
-        "parameterNames": _names(problem.extended),
+        "parameterNames": _names(problem.model),
         "expectedCovariance": finite_list_or_none(found.expected_covariance),
         "expectedStandardDeviations": standard_deviations(found.expected_covariance),
         "binding": [_binding(problem, binding).as_json() for binding in found.binding],
@@ -152,9 +150,9 @@ def _document(payload: dict[str, Any], problem: DesignProblem, found: Design) ->
     }
 
 
-def _names(model: ExtendedModel) -> list[str]:
+def _names(model: Model) -> list[str]:
     """θ_G, the parameters of the effects, θ_H."""
-    return [*joint_names(model), *model.base.parameter_names[model.base.plant_size :]]
+    return [*joint_names(model), *model.parameter_names[model.plant_size :]]
 
 
 def _binding(problem: DesignProblem, binding: Binding) -> BindingDocument:

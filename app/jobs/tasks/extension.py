@@ -35,14 +35,14 @@ def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
     request = ExtensionRequest.model_validate(payload["request"])
     parent = Model.model_validate(payload["model"])
     model = extended_model(parent, Plant.model_validate(payload["plant"]))
-    held_out = held_out_batches(payload["heldOut"], context.arrays, request.mean_value, model.base)
+    held_out = held_out_batches(payload["heldOut"], context.arrays, request.mean_value, model)
     with field_named(FIELDS, "/experimentIds"), within_doubles():
         batches = kept_batches(payload["experiments"], context.arrays, request.mean_value)
         context.progress(0.2, "the model without the effect")
         base = fit(model, rows_of(model, batches))
         context.progress(0.4, "the model with the effect")
         grown = _grown(base, _effect(request, payload["quantity"], batches), request)
-        require_finite(grown.model.base)
+        require_finite(grown.model)
         report = ExtensionReport(
             diagnosis_id=request.diagnosis_id,
             held_out_experiment_ids=list(request.held_out_experiment_ids),

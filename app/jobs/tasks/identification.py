@@ -24,7 +24,7 @@ from app.schemas.models import Model, ModelRequest
 from app.schemas.plants import Plant
 from identification.errors import MisuseError
 from identification.estimates import LocalEstimate, LpvEstimate
-from identification.models import RationalStructure
+from identification.models.rational import RationalStructure
 from identification.signals import FrequencyResponse, Measurement, TimeRecord
 
 KIND = "identification"

@@ -37,7 +37,7 @@ def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
     request = StaircaseRequest.model_validate(payload["request"])
     first = Model.model_validate(payload["model"])
     model = extended_model(first, Plant.model_validate(payload["plant"]))
-    held_out = held_out_batches(payload["heldOut"], context.arrays, request.mean_value, model.base)
+    held_out = held_out_batches(payload["heldOut"], context.arrays, request.mean_value, model)
     with field_named(FIELDS, "/experimentIds"), within_doubles():
         batches = kept_batches(payload["experiments"], context.arrays, request.mean_value)
         context.progress(0.2, "effects one after the other")
@@ -51,7 +51,7 @@ def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
             request.seed,
         )
         for step in steps:
-            require_finite(step.model.base)
+            require_finite(step.model)
         names = [first.id, *(new_identifier() for _ in steps[1:])]
         diagnoses = _diagnoses(payload, request, first, names, steps)
         versions = _versions(payload["request"], first, names, diagnoses, steps)

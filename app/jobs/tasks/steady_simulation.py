@@ -12,21 +12,21 @@ from app.conversion.fields import field_named
 from app.conversion.simulations import left_out_documents, output_documents, range_documents, steady_notes
 from app.jobs.task import TaskContext, TaskResult
 from app.schemas.experiments import Experiment
-from app.schemas.models import Model
+from app.schemas.models import Model as ModelDocument
 from app.schemas.plants import Plant
 from identification.along import Simulation
 from identification.arrays import FloatArray
 from identification.comparison.gather import gather
 from identification.errors import MisuseError
-from identification.extension.model import ExtendedModel
 from identification.extension.steady_period import SteadyPeriod, steady_period
+from identification.models.model import Model
 
 KIND = "steady_simulation"
 
 
 def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
     """The output and its standard deviation, one operating point after the other."""
-    plant, model = Plant.model_validate(payload["plant"]), Model.model_validate(payload["model"])
+    plant, model = Plant.model_validate(payload["plant"]), ModelDocument.model_validate(payload["model"])
     points = np.array(payload["operatingPoints"])
     known = (model.joint_covariance if model.effects else model.covariance) is not None
     with field_named(payload["pointers"], "/excitation"), within_doubles():
@@ -65,9 +65,9 @@ def _input(payload: dict[str, Any], context: TaskContext) -> FloatArray:
 
 
 def _simulated(
-    model: ExtendedModel, payload: dict[str, Any], u: FloatArray, known: bool, context: TaskContext
+    model: Model, payload: dict[str, Any], u: FloatArray, known: bool, context: TaskContext
 ) -> list[SteadyPeriod]:
-    points, sample_time = payload["operatingPoints"], model.base.structure.sample_time
+    points, sample_time = payload["operatingPoints"], model.structure.sample_time
     found = []
     for i, point in enumerate(points):
         context.progress(0.1 + 0.8 * i / len(points), f"operating point {i + 1} of {len(points)}")

@@ -16,10 +16,11 @@ from app.schemas.comparisons import Comparison
 from app.schemas.designs import Design
 from app.schemas.diagnoses import Diagnosis
 from app.schemas.experiments import Experiment
-from app.schemas.models import ErrorsDocument, Model
+from app.schemas.models import ErrorsDocument
+from app.schemas.models import Model as ModelDocument
 from app.schemas.plants import ContinuousTimeStructure, DiscreteTimeStructure, Plant
 from app.schemas.signals import SignalDocument, Signals
-from identification.extension.model import ExtendedModel
+from identification.models.model import Model
 from identification.scheduling import SchedulingVariable
 from identification.signals import Measurement
 from oed.realisation.realised_signal import RealisedSignal
@@ -74,7 +75,7 @@ class Chain:
     """
 
     plant: Plant
-    versions: tuple[Model, ...]
+    versions: tuple[ModelDocument, ...]
     experiments: tuple[Experiment, ...] = ()
     measurement: Callable[[Experiment], Measurement] | None = None
     designs: tuple[Design, ...] = ()
@@ -83,7 +84,7 @@ class Chain:
     signals: tuple[Played, ...] = ()
 
     @property
-    def model(self) -> Model:
+    def model(self) -> ModelDocument:
         """The latest version."""
         return self.versions[-1]
 
@@ -107,13 +108,13 @@ class Chain:
         """The operating point of an experiment in words."""
         return "varying" if one.operating_point is None else self.axes.point(tuple(one.operating_point))
 
-    def rational(self, model: Model) -> ExtendedModel | None:
+    def rational(self, model: ModelDocument) -> Model | None:
         """The model with its effects; None for other structures than rational ones."""
         if not isinstance(model.structure, DiscreteTimeStructure | ContinuousTimeStructure):
             return None
         return extended_model(model, self.plant)
 
-    def version_name(self, model: Model) -> str:
+    def version_name(self, model: ModelDocument) -> str:
         """What a version has that the one before it had not."""
         if model.effects and model.extension is not None:
             return f"with {model.effects[-1].title}"

@@ -11,11 +11,11 @@ from app.report.figures.poles import poles
 from app.report.figures.versions import side_by_side
 from app.report.numbers import estimate, significant
 from app.schemas.diagnoses import Diagnosis
-from app.schemas.models import Model
+from app.schemas.models import Model as ModelDocument
 from identification.arrays import FloatArray
 from identification.comparison.gather import gather
 from identification.errors import MisuseError
-from identification.models import LpvModel
+from identification.models.model import Model
 from identification.signals import OperatingPoint
 
 FINE = 81
@@ -40,14 +40,14 @@ def model_section(chain: Chain, number: int) -> Section:
     return Section(title, (text.get(model.origin, ""),), tuple(blocks))
 
 
-def _parameters(model: Model) -> Table:
+def _parameters(model: ModelDocument) -> Table:
     deviations = model.standard_deviations or [float("nan")] * len(model.theta)
     shown = list(zip(model.parameter_names, model.theta, deviations, strict=False))[:MOST_PARAMETERS]
     rows = tuple((name, estimate(value, sigma)) for name, value, sigma in shown)
     return Table(("parameter", "estimate ± σ"), rows)
 
 
-def _curves(chain: Chain, model: Model) -> list[Plot]:
+def _curves(chain: Chain, model: ModelDocument) -> list[Plot]:
     """Bode plot and poles over one scheduling variable, where there are no effects and the accuracy is known."""
     known = chain.rational(model)
     if known is None or known.effects or model.covariance is None or len(chain.axes.variables) != 1:
@@ -55,11 +55,11 @@ def _curves(chain: Chain, model: Model) -> list[Plot]:
     variable = chain.axes.variables[0]
     along = np.linspace(variable.minimum, variable.maximum, FINE)[:, None]
     some: list[OperatingPoint] = [(float(p),) for p in along[[0, FINE // 2, -1], 0]]
-    plots = [bode(known.base, some, _frequencies(chain, known.base), chain.axes)]
-    return [*plots, poles(known.base, along, chain.axes)] if known.base.structure.n_a else plots
+    plots = [bode(known, some, _frequencies(chain, known), chain.axes)]
+    return [*plots, poles(known, along, chain.axes)] if known.structure.n_a else plots
 
 
-def _frequencies(chain: Chain, model: LpvModel) -> FloatArray:
+def _frequencies(chain: Chain, model: Model) -> FloatArray:
     """Those that were excited; without experiments two decades up to the Nyquist frequency or around the scale."""
     known = [one.understood for one in chain.experiments]
     low = [one.minimum_frequency_rad_per_second for one in known if one.minimum_frequency_rad_per_second]

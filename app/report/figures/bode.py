@@ -11,7 +11,7 @@ from app.report.numbers import estimate, significant
 from app.report.style import NEUTRAL, add_band, add_truth, colour, dash, new_figure
 from identification.arrays import FloatArray
 from identification.confidence import QUANTILE_95, GainAndPhase, gain_and_phase
-from identification.models import LpvModel
+from identification.models.model import Model
 from identification.signals import FrequencyResponse, OperatingPoint
 
 TABLE_ROWS = 9
@@ -19,12 +19,12 @@ WORST_SHOWN = 0.3
 
 
 def bode(
-    model: LpvModel,
+    model: Model,
     points: Sequence[OperatingPoint],
     omega: FloatArray,
     axes: Axes,
     measured: Sequence[FrequencyResponse] = (),
-    truth: LpvModel | None = None,
+    truth: Model | None = None,
 ) -> Plot:
     """Gain and phase at chosen operating points with 95 % bands, measured points, and the true response if known."""
     figure = new_figure(("gain", "phase"), heights=(0.58, 0.42), height=600)
@@ -47,11 +47,11 @@ def bode(
 
 
 def gain_accuracy(
-    models: Sequence[tuple[str, LpvModel]],
+    models: Sequence[tuple[str, Model]],
     points: Sequence[OperatingPoint],
     omega: FloatArray,
     axes: Axes,
-    truth: LpvModel | None = None,
+    truth: Model | None = None,
 ) -> Plot:
     """95 % bands of the gain in % over frequency, one row an operating point, later models being the better ones."""
     height = 110 + 150 * len(points)
@@ -72,7 +72,7 @@ def gain_accuracy(
     return Plot(figure, f"{shown}, in % of the gain.", _accuracy_table(models, points, omega, axes))
 
 
-def _add_model(figure: go.Figure, model: LpvModel, point: OperatingPoint, omega: FloatArray, name: str, i: int) -> None:
+def _add_model(figure: go.Figure, model: Model, point: OperatingPoint, omega: FloatArray, name: str, i: int) -> None:
     known = _known(model, point, omega)
     line = {"color": colour(i), "dash": dash(i), "width": 2}
     low, high = known.gain_band()
@@ -83,7 +83,7 @@ def _add_model(figure: go.Figure, model: LpvModel, point: OperatingPoint, omega:
     _add_curve(figure, omega, np.rad2deg(known.phase), 2, name, line, False)
 
 
-def _add_measured(figure: go.Figure, model: LpvModel, measured: Sequence[FrequencyResponse], name: str, i: int) -> None:
+def _add_measured(figure: go.Figure, model: Model, measured: Sequence[FrequencyResponse], name: str, i: int) -> None:
     """Only points with a known noise of less than 30 %; the rest is noise and would hide the others."""
     marker = {"size": 5, "color": colour(i), "opacity": 0.6}
     for response in measured:
@@ -97,7 +97,7 @@ def _add_measured(figure: go.Figure, model: LpvModel, measured: Sequence[Frequen
             figure.add_scatter(x=omega[kept], y=y[kept], marker=marker, row=row, col=1, **common)
 
 
-def _add_truth(figure: go.Figure, truth: LpvModel, point: OperatingPoint, omega: FloatArray, show: bool) -> None:
+def _add_truth(figure: go.Figure, truth: Model, point: OperatingPoint, omega: FloatArray, show: bool) -> None:
     known = _known(truth, point, omega)
     add_truth(figure, omega, known.gain, 1, show)
     add_truth(figure, omega, np.rad2deg(known.phase), 2, False)
@@ -110,20 +110,18 @@ def _add_curve(
     figure.add_scatter(x=x, y=y, line=line, row=row, col=1, **common)
 
 
-def _known(model: LpvModel, point: OperatingPoint, omega: FloatArray) -> GainAndPhase:
+def _known(model: Model, point: OperatingPoint, omega: FloatArray) -> GainAndPhase:
     response, covariance = model.frequency_response([point], omega)[0], model.response_covariance([point], omega)[0]
     return gain_and_phase(response, covariance)
 
 
-def _half_widths(model: LpvModel, point: OperatingPoint, omega: FloatArray) -> FloatArray:
+def _half_widths(model: Model, point: OperatingPoint, omega: FloatArray) -> FloatArray:
     """Of the 95 % band of the gain, in % of the gain."""
     known = _known(model, point, omega)
     return np.asarray(100 * QUANTILE_95 * known.gain_deviation / known.gain)
 
 
-def _table(
-    model: LpvModel, points: Sequence[OperatingPoint], omega: FloatArray, axes: Axes, truth: LpvModel | None
-) -> Table:
+def _table(model: Model, points: Sequence[OperatingPoint], omega: FloatArray, axes: Axes, truth: Model | None) -> Table:
     chosen = omega[np.linspace(0, len(omega) - 1, TABLE_ROWS).astype(int)]
     heads = ("operating point", "frequency (rad/s)", labelled("gain ± 95 %", axes.gain_unit), "phase ± 95 % (degrees)")
     rows = []
@@ -142,7 +140,7 @@ def _with_bands(known: GainAndPhase, f: int) -> tuple[str, str]:
 
 
 def _accuracy_table(
-    models: Sequence[tuple[str, LpvModel]], points: Sequence[OperatingPoint], omega: FloatArray, axes: Axes
+    models: Sequence[tuple[str, Model]], points: Sequence[OperatingPoint], omega: FloatArray, axes: Axes
 ) -> Table:
     rows = []
     for point in points:

@@ -13,18 +13,18 @@ from app.report.style import add_band, add_truth, colour, new_figure
 from identification.arrays import FloatArray
 from identification.confidence import QUANTILE_95
 from identification.estimates import LocalEstimate
-from identification.models import LpvModel
+from identification.models.model import Model
 
 TABLE_ROWS = 9
 PARTS = ("real part", "imaginary part")
 
 
 def poles(
-    model: LpvModel,
+    model: Model,
     points: FloatArray,
     axes: Axes,
     local: Sequence[LocalEstimate] = (),
-    truth: LpvModel | None = None,
+    truth: Model | None = None,
 ) -> Plot:
     """Real and imaginary parts of the poles along operating points (M, s), with 95 % bands and local estimates."""
     parts = PARTS if np.any(model.poles(points).imag != 0) else PARTS[:1]
@@ -45,7 +45,7 @@ def poles(
     return Plot(figure, caption, _table(model, points, axes, truth))
 
 
-def _add_model(figure: go.Figure, model: LpvModel, points: FloatArray, row: int) -> None:
+def _add_model(figure: go.Figure, model: Model, points: FloatArray, row: int) -> None:
     middle, deviation = poles_of(model, points).part(row - 1)
     half, x = QUANTILE_95 * deviation, points[:, 0]
     for i, curve in enumerate(middle.T):
@@ -77,7 +77,7 @@ def _add_local(figure: go.Figure, local: Sequence[LocalEstimate], row: int) -> N
     )
 
 
-def _table(model: LpvModel, points: FloatArray, axes: Axes, truth: LpvModel | None) -> Table:
+def _table(model: Model, points: FloatArray, axes: Axes, truth: Model | None) -> Table:
     chosen = _some(points)
     found = poles_of(model, chosen)
     true = None if truth is None else np.sort_complex(truth.poles(chosen))

@@ -12,10 +12,10 @@ from app.report.style import NEUTRAL, add_band, colour, dash, new_figure
 from identification.arrays import BoolArray, ComplexArray, FloatArray
 from identification.comparison.batch import EXCITED, Batch
 from identification.confidence import gain_and_phase
-from identification.extension.model import ExtendedModel
 from identification.extension.response import linear_response
+from identification.models.model import Model
 
-Version = tuple[str, ExtendedModel]
+Version = tuple[str, Model]
 TABLE_ROWS = 9
 
 
@@ -53,7 +53,7 @@ def side_by_side(versions: Sequence[Version], batch: Batch, label: str, axes: Ax
     return Plot(figure, caption, _table(versions, omega, measured, said, noise, axes))
 
 
-def _said(model: ExtendedModel, batch: Batch, used: BoolArray) -> ComplexArray:
+def _said(model: Model, batch: Batch, used: BoolArray) -> ComplexArray:
     """Ŷ/U at the excited lines, (F,)."""
     return np.asarray(model.output(batch)[0, used] / batch.inputs[0, used])
 
@@ -72,7 +72,7 @@ def _add_version(
 
 
 def _add_bands(
-    figure: go.Figure, model: ExtendedModel, batch: Batch, omega: FloatArray, response: ComplexArray, name: str, i: int
+    figure: go.Figure, model: Model, batch: Batch, omega: FloatArray, response: ComplexArray, name: str, i: int
 ) -> None:
     covariance = linear_response(model, batch.points[:1], omega).covariance
     if covariance is None:

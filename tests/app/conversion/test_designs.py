@@ -8,8 +8,7 @@ from app.conversion.plants import lpv_model, structure_and_dependence
 from app.schemas.designs import DesignRequest
 from app.schemas.plants import PlantRequest
 from identification.errors import MisuseError, RangeError
-from identification.extension.model import ExtendedModel
-from identification.models import LpvModel
+from identification.models.model import Model
 from tests.support.paper import PLANT, THETA
 
 REQUEST = {
@@ -26,7 +25,7 @@ def request(**changes: object) -> DesignRequest:
     return DesignRequest.model_validate({**REQUEST, **changes})
 
 
-def model(basis: dict[str, object] | None = None) -> LpvModel:
+def model(basis: dict[str, object] | None = None) -> Model:
     plant = PlantRequest.model_validate({**PLANT, "basis": {"factors": [basis]} if basis else PLANT["basis"]})
     structure, dependence = structure_and_dependence(plant)
     return lpv_model(structure, dependence, THETA, np.diag(np.arange(1.0, 7.0) ** 2).tolist(), 0.5)
@@ -71,7 +70,7 @@ def test_a_model_over_a_box_is_the_same_model(kind: str) -> None:
 
 
 def test_prior_information_is_the_inverse_covariance() -> None:
-    information = prior_information(ExtendedModel(model()), known=True)
+    information = prior_information(model(), known=True)
     np.testing.assert_allclose(information @ model().covariance, np.eye(6), atol=1e-12)
     with pytest.raises(MisuseError, match="covariance"):
-        prior_information(ExtendedModel(model()), known=False)
+        prior_information(model(), known=False)

@@ -8,12 +8,12 @@ import pytest
 from app.conversion.effects import effect_documents, placed_effect
 from app.schemas.effects import PlacedEffectDocument
 from identification.effects.library import library
-from identification.extension.model import ExtendedModel, PlacedEffect
-from identification.models import LpvModel
+from identification.models.model import Model
 from identification.places.place import Effect
+from identification.places.placed import PlacedEffect
 from tests.support.plants import DEPENDENCE, EXAMPLE, THETA
 
-BASE = LpvModel(EXAMPLE, DEPENDENCE, THETA, np.eye(6), 1.0)
+BASE = Model(EXAMPLE, DEPENDENCE, THETA, np.eye(6), 1.0)
 
 
 def changed(effect: Effect) -> Effect:
@@ -28,7 +28,7 @@ def changed(effect: Effect) -> Effect:
 def test_a_document_becomes_the_same_effect(effect: Effect, degree: int) -> None:
     coefficients = np.arange(1.0, 1.0 + effect.shapes * (1 + degree)).reshape(effect.shapes, -1)
     placed = PlacedEffect(changed(effect), coefficients, degree)
-    document = effect_documents(ExtendedModel(BASE, (placed,)))[0]
+    document = effect_documents(dataclasses.replace(BASE, effects=(placed,)))[0]
     again = placed_effect(PlacedEffectDocument.model_validate_json(document.model_dump_json(by_alias=True)))
     assert again.effect == placed.effect
     assert [type(value) for value in dataclasses.astuple(again.effect)] == [
@@ -46,7 +46,7 @@ def test_deviations_are_those_of_the_effect_and_not_of_its_neighbours() -> None:
     further = len(resonance.fitted_names())
     size = BASE.plant_size + 1 + further + 1
     covariance = np.diag(np.arange(1.0, size + 1) ** 2)
-    first, second = effect_documents(ExtendedModel(BASE, tuple(placed), covariance))
+    first, second = effect_documents(dataclasses.replace(BASE, effects=tuple(placed), joint_covariance=covariance))
     k = BASE.plant_size
     assert first.standard_deviations == [[k + 1.0]]
     fitted = [one.standard_deviation for one in first.parameters if one.fitted]

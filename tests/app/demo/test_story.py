@@ -14,7 +14,6 @@ from app.demo.story import Story, design_request
 from app.demo.terminal import Terminal
 from app.jobs.tasks.design import stated_problem
 from app.offline.workplace import workplace
-from identification.extension.model import ExtendedModel
 from oed.design import design
 from tests.app.demo.conftest import Told
 
@@ -52,7 +51,7 @@ def test_repeating_the_first_experiment_as_often_as_stated_is_just_enough(story:
 
 def test_prior_information_saves_energy(story: Story) -> None:
     first = kept_model(story.versions[0], story.loop.plant)
-    problem = stated_problem(design_request(story.versions[0]), ExtendedModel(first), True)
+    problem = stated_problem(design_request(story.versions[0]), first, True)
     alone = design(replace(problem, prior_information=None))
     assert alone.total_energy > 1.02 * (story.designed.design.total_energy or 0.0)
 

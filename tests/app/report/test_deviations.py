@@ -7,7 +7,7 @@ import pytest
 
 from app.report.deviations import local_poles, poles_of
 from identification.arrays import FloatArray
-from identification.models import LocalModel, LpvModel
+from identification.models.model import LocalModel, Model
 from tests.app.report.models import POINTS, resonance
 
 
@@ -41,5 +41,5 @@ def test_a_local_model_has_the_deviations_of_the_whole_model_there() -> None:
     np.testing.assert_allclose(own.imaginary_deviation, whole.imaginary_deviation)
 
 
-def _with(model: LpvModel, theta: FloatArray) -> LpvModel:
+def _with(model: Model, theta: FloatArray) -> Model:
     return replace(model, theta=theta)

@@ -8,8 +8,8 @@ from app.virtual_plant.stage import LENGTH, Stage
 from identification.bases.polynomial import Polynomial
 from identification.comparison.gather import gather
 from identification.diagnosis.diagnose import diagnose
-from identification.extension.model import ExtendedModel
-from identification.models import LpvModel, RationalStructure
+from identification.models.model import Model
+from identification.models.rational import RationalStructure
 from identification.scheduling import ParameterDependence, ProductBasis, SchedulingVariable
 
 POSITION = SchedulingVariable("position", "m", 0.0, LENGTH)
@@ -19,9 +19,9 @@ STRUCTURE = RationalStructure(2, 0, frequency_scale=FREQUENCY_SCALE)
 
 def test_a_start_that_makes_things_worse_is_not_the_last_word_on_an_effect():
     """Here the amplitude that the score of the sinusoidal force points to is far too large for a refit to begin at."""
-    model = LpvModel(STRUCTURE, DEPENDENCE, np.array([0.22, 1.66, -1.48, 0.185]), np.eye(4), 1.0)
+    model = Model(STRUCTURE, DEPENDENCE, np.array([0.22, 1.66, -1.48, 0.185]), np.eye(4), 1.0)
     campaign = first_campaign(Stage(EFFECTS["cubic_stiffness"]), np.random.default_rng(2))
-    found = diagnose(ExtendedModel(model), gather(campaign.fitted))
+    found = diagnose(model, gather(campaign.fitted))
     explained = {one.score.candidate.effect.kind: one.explained for one in found.evidence}
     assert min(explained.values()) > 0
     assert explained["gravity"] > 1000

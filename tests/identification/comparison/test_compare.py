@@ -46,7 +46,7 @@ def test_nothing_fails_when_nothing_is_missing():
 
 def test_a_comparison_shows_the_model_as_it_is_and_what_a_refit_would_bring_beside_it():
     """Half the gain: 50 % fit on the very data that it is said to be fitted to, and all is well after a refit."""
-    halved = replace(MODEL, base=replace(MODEL.base, theta=MODEL.base.theta * np.array([1, 1, 1, 0.5])))
+    halved = replace(MODEL, theta=MODEL.theta * np.array([1, 1, 1, 0.5]))
     found = compare(halved, batches(1))
     assert found.fit_percent == pytest.approx(compare(halved, batches(1), fitted=False).fit_percent)
     assert found.fit_percent == pytest.approx(50, abs=2)
@@ -79,7 +79,7 @@ def test_the_responses_are_those_of_plant_and_model():
     spreads = []
     many = [batches(seed) for seed in range(10)]
     for batch, one in [pair for data in many for pair in zip(data, compare(MODEL, data).maps, strict=True)]:
-        response, seen = MODEL.base.frequency_response(batch.points, batch.omega), one.responses
+        response, seen = MODEL.frequency_response(batch.points, batch.omega), one.responses
         shown = seen.shown
         assert shown.any(axis=1).all()
         assert np.all(one.classes[shown] == EXCITED)
@@ -119,11 +119,10 @@ def test_a_misfit_of_one_band_is_found_there():
 
 def test_held_out_data_count_the_uncertainty_of_the_model():
     """A model off by two of its own standard deviations is refused only when it pretends to know better."""
-    base = MODEL.base
     covariance = np.diag([0.02, 0.1, 0.1, 0.01]) ** 2
-    draw = np.random.default_rng(5).multivariate_normal(base.theta, covariance)
-    unsure = replace(MODEL, base=replace(base, theta=draw, covariance=covariance))
-    sure = replace(MODEL, base=replace(base, theta=draw, covariance=1e-12 * np.eye(4)))
+    draw = np.random.default_rng(5).multivariate_normal(MODEL.theta, covariance)
+    unsure = replace(MODEL, theta=draw, covariance=covariance)
+    sure = replace(MODEL, theta=draw, covariance=1e-12 * np.eye(4))
     assert compare(unsure, batches(6), fitted=False).overall.p_value > 1e-3
     assert compare(sure, batches(6), fitted=False).overall.p_value < 1e-6
 
@@ -131,7 +130,7 @@ def test_held_out_data_count_the_uncertainty_of_the_model():
 def test_without_known_noise_there_are_no_tests_but_a_map():
     omega = np.linspace(1, 9, 30)
     responses = [
-        FrequencyResponse(omega, MODEL.base.frequency_response([[p]], omega)[0] * (1 + 0.01j), (p,)) for p in POINTS
+        FrequencyResponse(omega, MODEL.frequency_response([[p]], omega)[0] * (1 + 0.01j), (p,)) for p in POINTS
     ]
     found = compare(MODEL, gather(responses))
     assert found.overall is None
@@ -142,9 +141,9 @@ def test_without_known_noise_there_are_no_tests_but_a_map():
 def test_misuse_is_named():
     with pytest.raises(RangeError, match="outside its range"):
         compare(MODEL, gather([TimeRecord(r.input, r.output, SAMPLE_TIME, (9.0,), PERIOD) for r in clean_records()]))
-    nothing = replace(MODEL, base=replace(MODEL.base, covariance=np.full((4, 4), np.inf)))
+    nothing = replace(MODEL, covariance=np.full((4, 4), np.inf))
     with pytest.raises(MisuseError, match="no covariance"):
         compare(nothing, batches(), fitted=False)
-    discrete = replace(MODEL.base, structure=replace(MODEL.base.structure, sample_time=0.2))
+    discrete = replace(MODEL, structure=replace(MODEL.structure, sample_time=0.2))
     with pytest.raises(MisuseError, match="sample time"):
         compare(replace(MODEL, base=discrete), batches())

@@ -128,7 +128,7 @@ def test_what_needs_records_is_not_judged_from_responses():
     g = np.random.default_rng(5)
     omega = np.linspace(1, 12, 50)
     noise = 1e-4 * (g.standard_normal((5, 50)) + 1j * g.standard_normal((5, 50)))
-    clean = MODEL.base.frequency_response([[p] for p in POINTS], omega) + 3e-5j * omega
+    clean = MODEL.frequency_response([[p] for p in POINTS], omega) + 3e-5j * omega
     data = [
         FrequencyResponse(omega, row, (p,), variance=np.full(50, 2e-8))
         for p, row in zip(POINTS, clean + noise, strict=True)
@@ -169,9 +169,9 @@ def test_the_picture_of_what_is_missing_has_its_shape():
     found = diagnose(MODEL, data)
     (picture,) = missing_response(found.base)
     assert picture.response.shape == (5, 60)
-    true = MODEL.base.frequency_response([[p] for p in POINTS], picture.frequencies)
+    true = MODEL.frequency_response([[p] for p in POINTS], picture.frequencies)
     after = found.best.fit.model
-    wanted = true * np.exp(-0.02j * picture.frequencies) - found.base.model.base.frequency_response(
+    wanted = true * np.exp(-0.02j * picture.frequencies) - found.base.model.frequency_response(
         [[p] for p in POINTS], picture.frequencies
     )
     overlap = abs(np.vdot(wanted, picture.response)) / np.linalg.norm(wanted) / np.linalg.norm(picture.response)

@@ -7,8 +7,8 @@ from identification.bases.polynomial import Polynomial
 from identification.comparison.compare import compare
 from identification.comparison.gather import gather
 from identification.diagnosis.diagnose import diagnose
-from identification.extension.model import ExtendedModel
-from identification.models import LpvModel, RationalStructure
+from identification.models.model import Model
+from identification.models.rational import RationalStructure
 from identification.scheduling import ParameterDependence, ProductBasis, SchedulingVariable
 from identification.signals import TimeRecord
 from identification.simulation import simulate
@@ -18,7 +18,7 @@ DEPENDENCE = ParameterDependence(
     (SchedulingVariable("p", "V", 0.0, 1.0),), tuple(ProductBasis((Polynomial(1),)) for _ in range(2))
 )
 THETA = np.array([-0.7, 0.3, 1.0, 0.5])
-MODEL = ExtendedModel(LpvModel(STRUCTURE, DEPENDENCE, THETA, 1e-12 * np.eye(4), 1.0))
+MODEL = Model(STRUCTURE, DEPENDENCE, THETA, 1e-12 * np.eye(4), 1.0)
 PERIOD, PERIODS = 128, 5
 
 

@@ -9,9 +9,9 @@ from identification.comparison.gather import gather
 from identification.diagnosis.evidence import effective_count, indistinguishable, overlap
 from identification.diagnosis.staircase import staircase
 from identification.effects.library import library
-from identification.extension.model import ExtendedModel
 from identification.extension.rows import Rows
-from identification.models import LpvModel, RationalStructure
+from identification.models.model import Model
+from identification.models.rational import RationalStructure
 from identification.signals import FrequencyResponse
 from tests.support.oscillators import DEPENDENCE
 
@@ -48,7 +48,7 @@ def depressed():
     impedance = 1 + 2 / (1 + 1j * OMEGA) + 1 / (1 + (0.03j * OMEGA) ** 0.93)
     structure = RationalStructure(1, 1)
     theta = np.array([1.0, 2.0, 0.0, 4.0])
-    model = ExtendedModel(LpvModel(structure, DEPENDENCE, theta, np.eye(4), 1.0))
+    model = Model(structure, DEPENDENCE, theta, np.eye(4), 1.0)
     data = gather([FrequencyResponse(OMEGA, impedance * (1 + 1e-2 * np.sin(3 * np.log(OMEGA))), (0.5,))])
     (step, *_) = staircase(model, data, effects=library("impedance"), largest=1)
     return step.diagnosis

@@ -20,8 +20,8 @@ from identification.effects.quadratic_sensor import QuadraticSensor
 from identification.effects.resonance import Resonance
 from identification.effects.time_base import TimeBase
 from identification.extension.fit import fit
-from identification.extension.model import placed
 from identification.extension.rows import Rows
+from identification.places.placed import placed
 from identification.signals import FrequencyResponse
 from tests.support.oscillators import MODEL, POINTS, batches
 
@@ -135,7 +135,7 @@ def test_variances_that_are_hardly_known_raise_no_false_alarms():
     """Each line brings its own variance with five degrees of freedom: S is then a third larger than χ² says."""
     g = np.random.default_rng(0)
     omega = np.linspace(1, 12, 40)
-    clean = MODEL.base.frequency_response([[p] for p in POINTS], omega)
+    clean = MODEL.frequency_response([[p] for p in POINTS], omega)
     p = []
     for _ in range(250):
         noise = 1e-3 * np.sqrt(0.5) * (g.standard_normal(clean.shape) + 1j * g.standard_normal(clean.shape))

@@ -11,8 +11,9 @@ from identification.effects.delay import Delay
 from identification.effects.inductance import Inductance
 from identification.effects.rc_arc import RcArc
 from identification.extension.fit import differences, fit
-from identification.extension.model import ExtendedModel, placed
 from identification.extension.rows import Rows
+from identification.models.model import Model
+from identification.places.placed import placed
 from identification.places.simulate import NoSteadyStateError
 from identification.signals import FrequencyResponse
 from tests.support.oscillators import MODEL, POINTS, THETA, batches, integrated, phasors, records
@@ -36,7 +37,7 @@ def test_errors_are_as_large_as_the_covariance_says():
     for seed in range(80):
         found = fit(MODEL.plus(placed(Delay(), 0, 1)), Rows(delayed(seed)))
         error = found.model.parameters - [*THETA, TRUE_DELAY]
-        z.append(error @ np.linalg.solve(found.model.covariance, error))
+        z.append(error @ np.linalg.solve(found.model.joint_covariance, error))
     assert np.mean(z) == pytest.approx(5.0, rel=0.25)
 
 
@@ -46,7 +47,7 @@ def test_a_nonlinear_effect_is_fitted_with_its_own_sensitivity():
     outputs = [(a, integrated(p, a, lambda x, v: 20.0 * x**3)) for p, a in zip(POINTS[::2], inputs, strict=True)]
     rows = Rows(gather(records(outputs, g, 1e-3, points=POINTS[::2])))
     found = fit(MODEL.plus(placed(CubicStiffness(), 0, 1)), rows, exact=True)
-    sigma = np.sqrt(found.model.covariance[-1, -1])
+    sigma = np.sqrt(found.model.joint_covariance[-1, -1])
     assert abs(found.model.parameters[-1] - 20.0) < 4 * sigma
     assert sigma < 0.3
     gradient = differences(found) @ found.residual
@@ -58,7 +59,7 @@ def test_an_amplitude_may_depend_on_the_operating_point():
     data = [
         FrequencyResponse(
             omega,
-            MODEL.base.frequency_response([[p]], omega)[0] + 1j * omega * (2e-3 + 1e-3 * p),
+            MODEL.frequency_response([[p]], omega)[0] + 1j * omega * (2e-3 + 1e-3 * p),
             (p,),
             variance=np.full(40, 1e-12),
         )
@@ -76,12 +77,12 @@ def test_an_amplitude_keeps_its_physical_sign():
 def test_without_a_known_noise_the_covariance_is_scaled_by_the_residual():
     g = np.random.default_rng(8)
     omega = np.geomspace(0.5, 20, 60)
-    base = MODEL.base.frequency_response([[p] for p in POINTS], omega)
+    base = MODEL.frequency_response([[p] for p in POINTS], omega)
     noise = 1 + 0.05 * (g.standard_normal(base.shape) + 1j * g.standard_normal(base.shape)) / np.sqrt(2)
     data = [FrequencyResponse(omega, row, (p,)) for p, row in zip(POINTS, base * noise, strict=True)]
     found = fit(MODEL, Rows(gather(data)))
     error = found.model.parameters - THETA
-    assert 0.3 < error @ np.linalg.solve(found.model.covariance, error) / 4 < 3.5
+    assert 0.3 < error @ np.linalg.solve(found.model.joint_covariance, error) / 4 < 3.5
 
 
 def test_parameters_go_round():
@@ -89,7 +90,7 @@ def test_parameters_go_round():
     moved = model.with_parameters(model.parameters * 2)
     assert np.array_equal(moved.parameters, 2 * model.parameters)
     assert moved.effects[0].effect == RcArc(time=0.6)
-    assert isinstance(moved, ExtendedModel)
+    assert isinstance(moved, Model)
 
 
 @dataclass(frozen=True)

@@ -12,26 +12,27 @@ from identification.effects.delay import Delay
 from identification.effects.drift_of_gain import DriftOfGain
 from identification.effects.quadratic_dependence import QuadraticDependence
 from identification.effects.resonance import Resonance
-from identification.extension.model import ExtendedModel, placed
 from identification.extension.response import coefficients, linear_response
-from identification.models import LpvModel, RationalStructure
+from identification.models.model import Model
+from identification.models.rational import RationalStructure
 from identification.places.place import Effect
+from identification.places.placed import placed
 from identification.scheduling import ParameterDependence, ProductBasis, SchedulingVariable
 
 DEPENDENCE = ParameterDependence(
     (SchedulingVariable("p", "1", -1.0, 3.0),), tuple(ProductBasis((Polynomial(n),)) for n in (0, 1, 0))
 )
-BASE = LpvModel(RationalStructure(2, 0), DEPENDENCE, np.array([1.8, 64.0, 5.0, 2.0]), np.zeros((4, 4)), 1.0)
+BASE = Model(RationalStructure(2, 0), DEPENDENCE, np.array([1.8, 64.0, 5.0, 2.0]), np.zeros((4, 4)), 1.0)
 POINTS, OMEGA = [(-1.0,), (2.0,)], np.geomspace(1.0, 30.0, 11)
 
 
-def carrying(*effects: tuple[Effect, float]) -> ExtendedModel:
-    model = ExtendedModel(BASE)
+def carrying(*effects: tuple[Effect, float]) -> Model:
+    model = BASE
     for effect, amplitude in effects:
         model = model.plus(placed(effect, 0, 1, amplitude))
     generator = np.random.default_rng(2)
     factor = generator.standard_normal((len(model.parameters),) * 2) * 0.01 * abs(model.parameters)[:, None]
-    return ExtendedModel(model.base, model.effects, factor @ factor.T)
+    return replace(model, joint_covariance=factor @ factor.T)
 
 
 def core(p: float) -> ComplexArray:
@@ -53,7 +54,11 @@ def test_effects_on_signals_and_of_measurements_are_left_out_and_named() -> None
     np.testing.assert_allclose(found.response[0], np.exp(-0.01j * OMEGA) * core(-1.0))
     assert [effect.kind for effect in found.left_out] == ["cubic_stiffness", "gain_drift"]
     assert found.covariance is not None
-    alone = ExtendedModel(BASE, model.effects[2:], np.delete(np.delete(model.covariance, (4, 5), 0), (4, 5), 1))
+    alone = replace(
+        BASE,
+        effects=model.effects[2:],
+        joint_covariance=np.delete(np.delete(model.joint_covariance, (4, 5), 0), (4, 5), 1),
+    )
     np.testing.assert_allclose(found.covariance, linear_response(alone, POINTS, OMEGA).covariance)
 
 
@@ -61,7 +66,7 @@ def test_the_covariance_is_that_of_small_changes_of_all_parameters() -> None:
     model = carrying((Resonance(frequency=15.0, damping=0.1), 0.7), (Delay(), 0.02))
     found = linear_response(model, POINTS, OMEGA).covariance
     assert found is not None
-    assert model.covariance is not None
+    assert model.joint_covariance is not None
     values, columns = model.parameters, []
     for i, value in enumerate(values):
         step = 1e-6 * abs(value) * (np.arange(len(values)) == i)
@@ -69,7 +74,7 @@ def test_the_covariance_is_that_of_small_changes_of_all_parameters() -> None:
         columns.append((ends[0] - ends[1]) / (2 * step[i]))
     jacobian = np.stack(columns)
     parts: FloatArray = np.stack([jacobian.real, jacobian.imag], axis=-1)
-    expected = np.einsum("kmfi,kl,lmfj->mfij", parts, model.covariance, parts)
+    expected = np.einsum("kmfi,kl,lmfj->mfij", parts, model.joint_covariance, parts)
     np.testing.assert_allclose(found, expected, rtol=1e-4, atol=1e-6 * expected.max())
 
 
@@ -80,7 +85,7 @@ def test_coefficients_heed_the_effects_on_them() -> None:
 
 
 def test_without_a_covariance_there_is_none() -> None:
-    model = ExtendedModel(BASE, (placed(Delay(), 0, 1, 0.02),))
+    model = replace(BASE, effects=(placed(Delay(), 0, 1, 0.02),))
     assert linear_response(model, POINTS, OMEGA).covariance is None
     assert linear_response(model, POINTS, OMEGA).response == pytest.approx(
         linear_response(carrying((Delay(), 0.02)), POINTS, OMEGA).response
@@ -89,6 +94,6 @@ def test_without_a_covariance_there_is_none() -> None:
 
 def test_without_effects_it_is_the_response_of_the_model_itself() -> None:
     known = replace(BASE, covariance=np.diag([0.01, 0.2, 0.1, 0.003]))
-    found = linear_response(ExtendedModel(known), POINTS, OMEGA)
+    found = linear_response(known, POINTS, OMEGA)
     np.testing.assert_allclose(found.response, known.frequency_response(POINTS, OMEGA))
     np.testing.assert_allclose(found.covariance, known.response_covariance(POINTS, OMEGA), atol=1e-18)

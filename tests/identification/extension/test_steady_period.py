@@ -23,10 +23,11 @@ from identification.effects.resonance import Resonance
 from identification.effects.second_variable import SecondVariable
 from identification.effects.sensor_offset import SensorOffset
 from identification.errors import MisuseError
-from identification.extension.model import ExtendedModel, placed
 from identification.extension.steady_period import SteadyPeriod, steady_period
-from identification.models import LpvModel, RationalStructure
+from identification.models.model import Model
+from identification.models.rational import RationalStructure
 from identification.places.place import Effect
+from identification.places.placed import placed
 from identification.places.simulate import NoSteadyStateError
 from identification.scheduling import ParameterDependence, ProductBasis, SchedulingVariable
 from tests.support.oscillators import MODEL, PERIOD, SAMPLE_TIME, integrated, linear, phasors, played
@@ -35,7 +36,7 @@ AMPLITUDES = phasors(np.random.default_rng(5))
 INPUT = played(AMPLITUDES, np.arange(PERIOD) * SAMPLE_TIME)
 
 
-def carrying(*effects: tuple[Effect, float], base: ExtendedModel = MODEL) -> ExtendedModel:
+def carrying(*effects: tuple[Effect, float], base: Model = MODEL) -> Model:
     for effect, amplitude in effects:
         base = base.plus(placed(effect, 0, 1, amplitude))
     return base
@@ -87,7 +88,7 @@ def test_any_samples_in_continuous_time_are_met_by_their_own_interpolation():
     u = np.random.default_rng(1).standard_normal(16)
     structure = RationalStructure(0, 0)
     constant = ParameterDependence((SchedulingVariable("p", "", 0.0, 1.0),), (ProductBasis((Polynomial(0),)),))
-    model = ExtendedModel(LpvModel(structure, constant, np.array([2.0]), np.zeros((1, 1)), 1.0))
+    model = Model(structure, constant, np.array([2.0]), np.zeros((1, 1)), 1.0)
     whole = steady_period(carrying((Delay(), 0.3), base=model), u, 0.1, [[0.0]]).output[0]
     np.testing.assert_allclose(whole, 2 * np.roll(u, 3), atol=1e-12)
     half = steady_period(carrying((Delay(), 0.05), base=model), u, 0.1, [[0.0]]).output[0]
@@ -100,14 +101,12 @@ def test_any_samples_in_continuous_time_are_met_by_their_own_interpolation():
 STRUCTURE = RationalStructure(2, 1, n_k=1, sample_time=0.5)
 THETA = np.array([-1.2, 0.52, 0.1, 0.4, 0.25])
 VARIABLE = (SchedulingVariable("p", "", 0.0, 2.0),)
-DISCRETE = ExtendedModel(
-    LpvModel(
-        STRUCTURE,
-        ParameterDependence(VARIABLE, tuple(ProductBasis((Polynomial(n),)) for n in (0, 1, 0, 0))),
-        THETA,
-        np.diag([1e-4, 1e-4, 1e-5, 1e-4, 1e-4]),
-        1.0,
-    )
+DISCRETE = Model(
+    STRUCTURE,
+    ParameterDependence(VARIABLE, tuple(ProductBasis((Polynomial(n),)) for n in (0, 1, 0, 0))),
+    THETA,
+    np.diag([1e-4, 1e-4, 1e-5, 1e-4, 1e-4]),
+    1.0,
 )
 
 
@@ -156,7 +155,7 @@ def test_the_deviation_is_that_of_small_changes_of_all_parameters():
 def test_the_deviation_of_a_model_without_effects_is_that_of_theta():
     u = np.random.default_rng(3).standard_normal(32)
     variance = np.zeros(32)
-    for i, sigma in enumerate(np.sqrt(np.diagonal(DISCRETE.base.covariance))):
+    for i, sigma in enumerate(np.sqrt(np.diagonal(DISCRETE.covariance))):
         ends = [
             steady_period(
                 DISCRETE.with_parameters(THETA + sign * 1e-5 * np.eye(5)[i]), u, 0.5, [[1.0]], covariance_known=False

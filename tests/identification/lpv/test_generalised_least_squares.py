@@ -11,7 +11,7 @@ from identification.errors import MisuseError, NotIdentifiableError, ShapeError,
 from identification.estimates import LocalEstimate
 from identification.lpv.generalised_least_squares import GeneralisedLeastSquares
 from identification.lti.prediction_error import PredictionError
-from identification.models import LocalModel, LpvModel
+from identification.models.model import LocalModel, Model
 from identification.outcome import Outcome
 from identification.scheduling import ParameterDependence, ProductBasis
 from identification.signals import FrequencyResponse, TimeRecord
@@ -66,7 +66,7 @@ def test_the_estimate_is_nine_and_ten():
 
 def test_exact_for_exact_local_models():
     estimate = fitted((0.0, 8.0), deviation=0.0)
-    truth = LpvModel(EXAMPLE, DEPENDENCE, THETA, np.eye(6), 0.5)
+    truth = Model(EXAMPLE, DEPENDENCE, THETA, np.eye(6), 0.5)
     assert np.allclose(estimate.model.frequency_response(GRID, OMEGA), truth.frequency_response(GRID, OMEGA), rtol=1e-9)
 
 
@@ -190,7 +190,7 @@ def test_misuse():
     responses = [FrequencyResponse([0.1], [1.0], (p,), 1.0) for p in POINTS]
     with pytest.raises(NotIdentifiableError, match="says nothing about H"):
         estimator.estimate(EXAMPLE, DEPENDENCE, responses, local)
-    other = LpvModel(EXAMPLE, polynomial_dependence(0, 0, 0), np.zeros(3), np.eye(3), 1.0)
+    other = Model(EXAMPLE, polynomial_dependence(0, 0, 0), np.zeros(3), np.eye(3), 1.0)
     with pytest.raises(MisuseError, match="prior"):
         estimator.estimate(EXAMPLE, DEPENDENCE, experiments, local, prior=other)
 

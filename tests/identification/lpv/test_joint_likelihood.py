@@ -8,7 +8,8 @@ from identification.errors import MisuseError, NotIdentifiableError, TooFewOpera
 from identification.lpv.generalised_least_squares import GeneralisedLeastSquares
 from identification.lpv.joint_likelihood import JointLikelihood
 from identification.lti.prediction_error import PredictionError
-from identification.models import LpvModel, RationalStructure
+from identification.models.model import Model
+from identification.models.rational import RationalStructure
 from identification.signals import FrequencyResponse, TimeRecord
 from identification.simulation import simulate
 from tests.support.plants import (
@@ -42,7 +43,7 @@ def response_at(p, structure, zeta, omega, generator=None, deviation=0.1, known=
 
 
 def largest_error(model, theta=THETA):
-    truth = LpvModel(model.structure, model.dependence, theta, model.covariance, 1.0).frequency_response(GRID, OMEGA)
+    truth = Model(model.structure, model.dependence, theta, model.covariance, 1.0).frequency_response(GRID, OMEGA)
     return np.max(abs(model.frequency_response(GRID, OMEGA) / truth - 1))
 
 

@@ -9,7 +9,7 @@ from identification.errors import MisuseError, NotIdentifiableError, RangeError
 from identification.initial_conditions import errors_from
 from identification.least_squares import levenberg_marquardt
 from identification.lti.prediction_error import PredictionError
-from identification.models import RationalStructure
+from identification.models.rational import RationalStructure
 from identification.signals import TimeRecord
 from identification.simulation import simulate
 from tests.support.plants import EXAMPLE, example_record, random_case, steady_record

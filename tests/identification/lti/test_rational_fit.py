@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 from identification.arrays import FloatArray
 from identification.errors import MisuseError, NotIdentifiableError, RangeError
 from identification.lti.rational_fit import RationalFit, relative_error
-from identification.models import LocalModel, RationalStructure
+from identification.models.model import LocalModel
+from identification.models.rational import RationalStructure
 from identification.signals import FrequencyResponse
 
 RELATIVE = RationalFit(weighting="relative")

@@ -9,7 +9,7 @@ from scipy import stats
 from identification.arrays import FloatArray
 from identification.estimates import LocalEstimate
 from identification.lti.rational_fit import RationalFit
-from identification.models import RationalStructure
+from identification.models.rational import RationalStructure
 from identification.response_tests import variance_inflation
 from identification.signals import FrequencyResponse, TimeRecord
 from identification.simulation import simulate

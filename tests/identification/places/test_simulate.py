@@ -14,7 +14,7 @@ from identification.effects.quadratic_sensor import QuadraticSensor
 from identification.effects.rc_arc import RcArc
 from identification.effects.resonance import Resonance
 from identification.errors import MisuseError
-from identification.extension.model import placed
+from identification.places.placed import placed
 from identification.places.simulate import NoSteadyStateError, fixed_point
 from identification.signals import FrequencyResponse
 from tests.support.oscillators import MODEL, OMEGA, batches, integrated, linear, phasors, played, records

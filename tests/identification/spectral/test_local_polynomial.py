@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy import stats
 
 from identification.errors import MisuseError, RangeError
-from identification.models import RationalStructure
+from identification.models.rational import RationalStructure
 from identification.signals import TimeRecord
 from identification.simulation import simulate
 from identification.spectral.local_polynomial import LocalPolynomial

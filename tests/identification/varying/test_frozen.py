@@ -9,9 +9,9 @@ from identification.affine_estimate import AffineEstimate
 from identification.affine_state_space import AffineStateSpace
 from identification.effects.delay import Delay
 from identification.errors import MisuseError
-from identification.extension.model import placed
 from identification.extension.response import linear_response
 from identification.outcome import Outcome
+from identification.places.placed import placed
 from identification.scheduling import SchedulingVariable
 from identification.varying.affine_parameters import AffineSizes
 from identification.varying.frozen import affine_estimate, frozen, smallest_basis
@@ -48,19 +48,19 @@ def test_responses_and_their_covariances_are_those_of_the_model(order: int, n_p:
     )
     points = np.random.default_rng(1).uniform(-1, 1, (3, n_p))
     assert np.allclose(
-        model.base.frequency_response(points, OMEGA),
+        model.frequency_response(points, OMEGA),
         found.model.frequency_response(points, OMEGA)[..., 0, 0],
         rtol=1e-8,
     )
     expected = found.response_covariance(points, OMEGA)[:, :, 0, 0]
-    assert np.allclose(model.base.response_covariance(points, OMEGA), expected, rtol=1e-6, atol=1e-8 * expected.max())
-    assert model.base.plant_size == AffineSizes.of(found.model).free
-    poles = np.sort_complex(model.base.poles(points))
+    assert np.allclose(model.response_covariance(points, OMEGA), expected, rtol=1e-6, atol=1e-8 * expected.max())
+    assert model.plant_size == AffineSizes.of(found.model).free
+    poles = np.sort_complex(model.poles(points))
     assert np.allclose(poles, np.sort_complex(np.linalg.eigvals(found.model.frozen(points)[0])), atol=1e-8)
 
 
 def test_the_gradient_is_the_derivative() -> None:
-    base = frozen(estimate(5, 3, 1)).base
+    base = frozen(estimate(5, 3, 1))
     zeta = base.coefficients([[0.3], [-0.7]])
     direction = np.random.default_rng(2).standard_normal(zeta.shape[1])
     step = 1e-6 * direction
@@ -81,7 +81,7 @@ def test_in_the_smallest_basis_the_parameters_lie_in_their_own_chart(seed: int) 
 
 
 def test_a_model_without_covariance_has_none_and_one_with_several_channels_is_refused() -> None:
-    assert frozen(estimate(1, 2, 1, known=False)).covariance is None
+    assert frozen(estimate(1, 2, 1, known=False)).joint_covariance is None
     wide = random_model(np.random.default_rng(3), 2, 1, 2, 1)
     with pytest.raises(MisuseError, match="2 inputs"):
         frozen(AffineEstimate(wide, Outcome("converged"), ()))
@@ -93,10 +93,10 @@ def test_effects_keep_their_covariance_with_the_parameters_and_their_own() -> No
     free = AffineSizes.of(found.model).free
     root = np.random.default_rng(2).standard_normal((free + 1, free + 1))
     model = frozen(found).plus(placed(Delay(), 0, 1, 0.3))
-    model = dataclasses.replace(model, covariance=1e-4 * root @ root.T)
+    model = dataclasses.replace(model, joint_covariance=1e-4 * root @ root.T)
     kept, joint = affine_estimate(model)
     again = frozen(kept, model.effects, joint)
-    assert again.covariance[-1, -1] == pytest.approx(model.covariance[-1, -1])
+    assert again.joint_covariance[-1, -1] == pytest.approx(model.joint_covariance[-1, -1])
     one, other = (linear_response(each, [[0.4]], OMEGA) for each in (model, again))
     assert other.response == pytest.approx(one.response)
     assert other.covariance == pytest.approx(one.covariance, rel=1e-6)

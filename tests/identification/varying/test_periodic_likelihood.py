@@ -13,7 +13,7 @@ from identification.affine_estimate import AffineEstimate
 from identification.affine_state_space import variance_accounted_for
 from identification.errors import MisuseError, NotIdentifiableError, ShapeError
 from identification.lti.rational_fit import RationalFit
-from identification.models import RationalStructure
+from identification.models.rational import RationalStructure
 from identification.outcome import Outcome
 from identification.signals import TimeRecord
 from identification.spectral.periodic_average import PeriodicAverage

@@ -1,15 +1,11 @@
-"""Rational models of the Box–Jenkins family at one operating point, and their parameter-varying form."""
+"""Rational models of the Box–Jenkins family at one operating point."""
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from identification.arrays import BoolArray, ComplexArray, FloatArray, require_positive
 from identification.errors import RangeError, ShapeError
-from identification.scheduling import ParameterDependence
-from identification.signals import OperatingPoint
 
 
 @dataclass(frozen=True)
@@ -161,63 +157,3 @@ def roots(coefficients: FloatArray) -> ComplexArray:
     companion[..., 0, :] = -coefficients
     companion[..., np.arange(1, order), np.arange(order - 1)] = 1.0
     return np.asarray(np.linalg.eigvals(companion), dtype=np.complex128)
-
-
-@dataclass(frozen=True, eq=False)
-class LocalModel:
-    """A model at one operating point: ζ (n,), its covariance P_ζ (n, n) and the variance σ_e² of e."""
-
-    structure: RationalStructure
-    operating_point: OperatingPoint
-    zeta: FloatArray
-    covariance: FloatArray
-    noise_variance: float
-
-
-@dataclass(frozen=True, eq=False)
-class LpvModel:
-    """A parameter-varying model ζ(p) = T(p) θ: θ (k,), its covariance P_θ (k, k) and the variance σ_e² of e."""
-
-    structure: RationalStructure
-    dependence: ParameterDependence
-    theta: FloatArray
-    covariance: FloatArray
-    noise_variance: float
-
-    def __post_init__(self) -> None:
-        n, k = self.structure.size, self.dependence.size
-        if self.dependence.coefficient_count != n:
-            raise ShapeError(f"{self.dependence.coefficient_count} bases were given for {n} coefficients", "basis")
-        if np.shape(self.theta) != (k,):
-            raise ShapeError(f"θ has shape {np.shape(self.theta)}, this model has {k} parameters", "theta")
-        if np.shape(self.covariance) != (k, k):
-            raise ShapeError(f"the covariance has shape {np.shape(self.covariance)}, it must be {(k, k)}", "covariance")
-
-    @cached_property
-    def plant_size(self) -> int:
-        """k_G, the number of entries of θ that belong to G; they come first."""
-        return self.dependence.parameters_of(self.structure.n_plant)
-
-    @property
-    def parameter_names(self) -> tuple[str, ...]:
-        """A name for each entry of θ."""
-        return self.dependence.parameter_names(self.structure.coefficient_names)
-
-    def coefficients(self, points: ArrayLike) -> FloatArray:
-        """ζ(p) at the operating points (M, s), as (M, n)."""
-        return self.dependence.coefficients(self.theta, points)
-
-    def frequency_response(self, points: ArrayLike, omega: FloatArray) -> ComplexArray:
-        """G(p, ω) at the operating points (M, s) and ω (F,) in rad/s, as (M, F)."""
-        return self.structure.plant_response(self.coefficients(points), omega)
-
-    def response_covariance(self, points: ArrayLike, omega: FloatArray) -> FloatArray:
-        """Covariance of (Re G, Im G) at the points (M, s) and ω (F,), as (M, F, 2, 2), to first order in P_θ."""
-        gradient = self.structure.plant_gradient(self.coefficients(points), omega)
-        sensitivity = self.dependence.pulled(np.swapaxes(gradient, 1, 2), points)
-        parts = np.stack([sensitivity.real, sensitivity.imag], axis=-2)
-        return np.asarray(parts @ self.covariance[: self.plant_size, : self.plant_size] @ np.swapaxes(parts, -1, -2))
-
-    def poles(self, points: ArrayLike) -> ComplexArray:
-        """Poles of G at the operating points (M, s), as (M, n_a)."""
-        return self.structure.poles(self.coefficients(points))

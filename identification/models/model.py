@@ -1,0 +1,150 @@
+"""A parameter-varying model, with the physical effects that it carries."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from identification.arrays import ComplexArray, FloatArray
+from identification.comparison.batch import Batch
+from identification.errors import MisuseError, ShapeError
+from identification.models.rational import RationalStructure
+from identification.places.place import Flow, Setting
+from identification.places.placed import PlacedEffect
+from identification.places.simulate import Solver, simulate
+from identification.scheduling import ParameterDependence
+from identification.signals import OperatingPoint
+
+SLOPE_STEP = 1e-4
+
+
+@dataclass(frozen=True, eq=False)
+class LocalModel:
+    """A model at one operating point: ζ (n,), its covariance P_ζ (n, n) and the variance σ_e² of e."""
+
+    structure: RationalStructure
+    operating_point: OperatingPoint
+    zeta: FloatArray
+    covariance: FloatArray
+    noise_variance: float
+
+
+@dataclass(frozen=True, eq=False)
+class Model:
+    """A parameter-varying model ζ(p) = T(p) θ of a plant, and the physical effects that act in it or on it.
+
+    θ (k,) with its `covariance` P_θ (k, k); `noise_variance` σ_e² of e. `joint_covariance` of `parameters`, θ_G and
+    those of the effects, as they were estimated together; None before that. Its coefficients, response and poles are
+    those of the plant itself; `respond` and `output` hold the effects as well.
+    """
+
+    structure: RationalStructure
+    dependence: ParameterDependence
+    theta: FloatArray
+    covariance: FloatArray
+    noise_variance: float
+    effects: tuple[PlacedEffect, ...] = ()
+    joint_covariance: FloatArray | None = None
+
+    def __post_init__(self) -> None:
+        n, k = self.structure.size, self.dependence.size
+        if self.dependence.coefficient_count != n:
+            raise ShapeError(f"{self.dependence.coefficient_count} bases were given for {n} coefficients", "basis")
+        if np.shape(self.theta) != (k,):
+            raise ShapeError(f"θ has shape {np.shape(self.theta)}, this model has {k} parameters", "theta")
+        if np.shape(self.covariance) != (k, k):
+            raise ShapeError(f"the covariance has shape {np.shape(self.covariance)}, it must be {(k, k)}", "covariance")
+
+    @cached_property
+    def plant_size(self) -> int:
+        """k_G, the number of entries of θ that belong to G; they come first."""
+        return self.dependence.parameters_of(self.structure.n_plant)
+
+    @property
+    def parameter_names(self) -> tuple[str, ...]:
+        """A name for each entry of θ."""
+        return self.dependence.parameter_names(self.structure.coefficient_names)
+
+    def coefficients(self, points: ArrayLike) -> FloatArray:
+        """ζ(p) at the operating points (M, s), as (M, n)."""
+        return self.dependence.coefficients(self.theta, points)
+
+    def frequency_response(self, points: ArrayLike, omega: FloatArray) -> ComplexArray:
+        """G(p, ω) at the operating points (M, s) and ω (F,) in rad/s, as (M, F)."""
+        return self.structure.plant_response(self.coefficients(points), omega)
+
+    def response_covariance(self, points: ArrayLike, omega: FloatArray) -> FloatArray:
+        """Covariance of (Re G, Im G) at the points (M, s) and ω (F,), as (M, F, 2, 2), to first order in P_θ."""
+        gradient = self.structure.plant_gradient(self.coefficients(points), omega)
+        sensitivity = self.dependence.pulled(np.swapaxes(gradient, 1, 2), points)
+        parts = np.stack([sensitivity.real, sensitivity.imag], axis=-2)
+        return np.asarray(parts @ self.covariance[: self.plant_size, : self.plant_size] @ np.swapaxes(parts, -1, -2))
+
+    def poles(self, points: ArrayLike) -> ComplexArray:
+        """Poles of G at the operating points (M, s), as (M, n_a)."""
+        return self.structure.poles(self.coefficients(points))
+
+    @property
+    def parameters(self) -> FloatArray:
+        """θ_G, then the parameters of each effect."""
+        return np.concatenate([self.theta[: self.plant_size], *(one.parameters() for one in self.effects)])
+
+    @property
+    def known_covariance(self) -> FloatArray | None:
+        """The covariance of `parameters`; without effects that of θ_G serves, with effects not yet estimated None."""
+        if self.joint_covariance is None and not self.effects:
+            return self.covariance[: self.plant_size, : self.plant_size]
+        return self.joint_covariance
+
+    def with_parameters(self, values: FloatArray) -> "Model":
+        """The same model with other parameters and no joint covariance."""
+        plant = self.plant_size
+        theta = np.concatenate([values[:plant], self.theta[plant:]])
+        lengths = [len(one.parameters()) for one in self.effects]
+        parts = np.split(values[plant:], np.cumsum(lengths)[:-1]) if lengths else []
+        effects = tuple(one.with_parameters(part) for one, part in zip(self.effects, parts, strict=True))
+        return replace(self, theta=theta, effects=effects, joint_covariance=None)
+
+    def plus(self, effect: PlacedEffect) -> "Model":
+        """The model with one effect more, not fitted yet."""
+        return replace(self, effects=(*self.effects, effect), joint_covariance=None)
+
+    def setting(self, points: ArrayLike) -> Setting:
+        """ζ and its slope at the operating points (M, s)."""
+        variables = self.dependence.variables
+        p = self.dependence.points(points)
+        low, high = np.array([(v.minimum, v.maximum) for v in variables]).T
+        half = (high - low) / 2
+        steps = SLOPE_STEP * np.diag(half)[:, None]
+        up, down = np.minimum(p + steps, high), np.maximum(p - steps, low)
+        zeta, *ends = np.split(self.coefficients(np.concatenate([p, *up, *down])), 1 + 2 * len(half))
+        lengths = np.einsum("sms->sm", up - down) / half[:, None]
+        slopes = (np.array(ends[: len(half)]) - np.array(ends[len(half) :])) / lengths[..., None]
+        slope = np.moveaxis(slopes, 0, -1)[:, : self.structure.n_plant]
+        return Setting(self.structure, zeta, (p - low) / half - 1, slope)
+
+    def respond(self, batch: Batch, start: ComplexArray | None = None, solve: Solver | None = None) -> Flow:
+        """The steady signals of a batch; see `identification.places.simulate`."""
+        setting = self.setting(batch.points)
+        acting = [(one.effect, one.amplitude(setting, batch)) for one in self.effects]
+        return simulate(setting, acting, batch, start, solve)
+
+    def output(self, batch: Batch) -> ComplexArray:
+        """The lines of the output, (M, K)."""
+        return self.respond(batch).output
+
+
+def require_matching(model: Model, batches: Sequence[Batch]) -> None:
+    """Raises MisuseError unless the batches can be compared with the model: time domain, operating points."""
+    for batch in batches:
+        model.dependence.points(batch.points)
+        sampled = batch.sample_time is not None
+        own = model.structure.sample_time
+        if own is not None and not (sampled and abs((batch.sample_time or 0.0) / own - 1) < 1e-9):
+            raise MisuseError(
+                f"the model has the sample time {own} s and the measurement {batch.sample_time}; compare data of the"
+                " same sampling",
+                "sample_time",
+            )
