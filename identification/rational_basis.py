@@ -7,6 +7,7 @@ import numpy as np
 
 from identification.arrays import ComplexArray, FloatArray
 from identification.errors import RangeError
+from identification.hold import without_hold
 from identification.models.rational import RationalStructure
 from identification.signals import FrequencyResponse
 
@@ -26,9 +27,9 @@ class LinearProblem:
 
     @classmethod
     def of(cls, structure: RationalStructure, data: FrequencyResponse, weights: FloatArray) -> Self:
-        """The problem of a measurement; lines that differ only in order give the same problem."""
+        """The problem of a measurement, its hold divided out; lines that differ only in order give the same problem."""
         order = np.argsort(data.frequencies)
-        return cls(structure, data.frequencies[order], data.response[order], weights[order])
+        return cls(structure, data.frequencies[order], without_hold(data)[order], weights[order])
 
     @property
     def x(self) -> ComplexArray:

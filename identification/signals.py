@@ -13,6 +13,19 @@ Hold = Literal["zero", "first", "band"]
 OperatingPoint = tuple[float, ...]
 
 
+@dataclass(frozen=True)
+class HeldInput:
+    """An input that keeps its value between samples (`hold` "zero"), or runs in straight lines from one to the next
+    ("first"); `step` from sample to sample in seconds. Raises RangeError for a step ≤ 0.
+    """
+
+    step: float
+    hold: Literal["zero", "first"] = "zero"
+
+    def __post_init__(self) -> None:
+        require_positive(self.step, "sample time")
+
+
 @dataclass(frozen=True, eq=False)
 class TimeRecord:
     """Input and output of one local experiment, u(t) and y(t), t = 0 … N−1, at a constant operating point.
@@ -66,6 +79,13 @@ class TimeRecord:
         """How many whole periods the record holds (1 without a period)."""
         return 1 if self.period is None else len(self) // self.period
 
+    @property
+    def held(self) -> HeldInput | None:
+        """How a model in continuous time sees the input; None where it is band limited, or this is not known."""
+        if self.hold == "zero" or self.hold == "first":
+            return HeldInput(self.sample_time, self.hold)
+        return None
+
 
 def require_sampling(samples: int, sample_time: float, period: int | None) -> None:
     """Raises RangeError unless there are two samples or more, and sample time and period can be theirs."""
@@ -86,7 +106,9 @@ class FrequencyResponse:
     `sample_time` in seconds, None for continuous time; `variance`: shaped as `response`, E|n_k|² of circular complex
     noise (real and imaginary part have half of it each), None when unknown; `variance_degrees_of_freedom`: of its
     estimate, None when it is known exactly. With several inputs or outputs `covariance` (F, n_y n_u, n_y n_u) may say
-    how the entries are correlated, E vec(n_k) vec(n_k)ᴴ, entries row by row; `variance` is then its diagonal.
+    how the entries are correlated, E vec(n_k) vec(n_k)ᴴ, entries row by row; `variance` is then its diagonal. `held`:
+    how the input ran between its samples where the response is from samples to samples and is to be that of a model in
+    continuous time; None where it was band limited or sine by sine.
     Raises ShapeError for sizes that do not fit, RangeError for values that are not finite, repeated or negative
     frequencies, frequencies above the Nyquist frequency, and covariances that are not Hermitian and positive definite.
     """
@@ -99,6 +121,7 @@ class FrequencyResponse:
     variance_degrees_of_freedom: float | None = None
     covariance: ComplexArray | None = None
     channels: Channels = UNSTATED
+    held: HeldInput | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "frequencies", finite_floats(self.frequencies, "frequencies"))

@@ -17,6 +17,7 @@ from app.schemas.state_space import StateSpaceModelRequest
 from identification.arrays import FloatArray
 from identification.errors import RangeError
 from identification.estimates import LocalEstimate
+from identification.hold import held_response
 from identification.models.model import Model
 from identification.models.rational import RationalStructure
 from identification.outcome import Outcome, TestResult
@@ -102,7 +103,7 @@ def _relative_error(estimate: LocalEstimate, data: Measurement | None) -> float 
     """√(mean |Ĝ − G|²/|Ĝ|²) over the frequencies at which Ĝ is not zero."""
     if not isinstance(data, FrequencyResponse):
         return None
-    response = estimate.model.structure.plant_response(estimate.model.zeta, data.frequencies)
+    response = held_response(estimate.model.structure, estimate.model.zeta, data.frequencies, data.held)
     seen = data.response != 0
     return finite_or_none(float(np.sqrt(np.mean(abs(1 - response[seen] / data.response[seen]) ** 2))))
 

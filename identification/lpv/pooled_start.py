@@ -7,6 +7,7 @@ from scipy.linalg import qr
 
 from identification.arrays import ComplexArray, FloatArray
 from identification.filtering import lfilter
+from identification.hold import without_hold
 from identification.likelihood import delayed
 from identification.lti.box_jenkins_start import autoregression, disturbance, high_order_model, reflected
 from identification.models.rational import RationalStructure
@@ -88,7 +89,7 @@ class _Rows:
         if theta is not None:
             local = self.transfer @ theta
             weights = weights / abs(denominator[0] + local[: s.n_a] @ denominator[1:])
-        response = data.response * np.exp(1j * data.frequencies * self.tau)
+        response = without_hold(data) * np.exp(1j * data.frequencies * self.tau)
         columns = weights * np.concatenate([-response * denominator[1:], numerator])
         target = weights * response * denominator[0]
         return _real(columns).T, _real(target)

@@ -8,6 +8,7 @@ import numpy as np
 from identification.arrays import FloatArray
 from identification.errors import MisuseError, NotIdentifiableError, RangeError
 from identification.estimates import LocalEstimate
+from identification.hold import held_response
 from identification.least_squares import LeastSquaresSolution, levenberg_marquardt
 from identification.likelihood import require_same_sampling, response_errors
 from identification.models.model import LocalModel
@@ -84,6 +85,12 @@ class RationalFit:
         require_same_sampling(structure, data)
         if self.relaxation:
             require_relaxation(structure)
+            if data.held is not None:
+                raise MisuseError(
+                    "positive residues are fitted to responses of continuous inputs, not of held ones; leave the"
+                    " relaxation out",
+                    "relaxation",
+                )
         if structure.n_noise:
             raise MisuseError(
                 "a frequency response says nothing about the noise model; set n_c and n_d to zero", "structure"
@@ -173,7 +180,7 @@ def relative_error(model: LocalModel, data: FrequencyResponse, weighting: Weight
     """
     require_same_sampling(model.structure, data)
     weights = RationalFit(weighting=weighting)._weights(data)
-    error = data.response - model.structure.plant_response(model.zeta, data.frequencies)
+    error = data.response - held_response(model.structure, model.zeta, data.frequencies, data.held)
     return float(np.linalg.norm(weights * error) / np.linalg.norm(weights * data.response))
 
 

@@ -102,6 +102,7 @@ class LocalPolynomial:
             None if self.continuous_time else record.sample_time,
             variance[usable],
             float(2 * half + 1 - 2 * (self.degree + 1)),
+            held=record.held if self.continuous_time else None,
         )
 
     def _windows(

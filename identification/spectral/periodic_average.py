@@ -79,6 +79,7 @@ class PeriodicAverage:
             None if self.continuous_time else record.sample_time,
             variance,
             float(count - 1),
+            held=record.held if self.continuous_time else None,
         )
 
     def steady_spectra(self, record: TimeRecord) -> tuple[ComplexArray, ComplexArray]:
