@@ -5,7 +5,7 @@ import numpy as np
 from identification.arrays import FloatArray
 from identification.errors import MisuseError
 from identification.filtering import lfilter
-from identification.hold import held_gradient, held_response
+from identification.models.hold import held_gradient, held_response
 from identification.models.rational import RationalStructure
 from identification.signals import FrequencyResponse, Measurement, TimeRecord, require_one_channel
 

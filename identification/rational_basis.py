@@ -7,7 +7,7 @@ import numpy as np
 
 from identification.arrays import ComplexArray, FloatArray
 from identification.errors import RangeError
-from identification.hold import without_hold
+from identification.models.hold import without_hold
 from identification.models.rational import RationalStructure
 from identification.signals import FrequencyResponse
 

@@ -17,7 +17,7 @@ from app.schemas.state_space import StateSpaceModelRequest
 from identification.arrays import FloatArray
 from identification.errors import RangeError
 from identification.estimates import LocalEstimate
-from identification.hold import held_response
+from identification.models.hold import held_response
 from identification.models.model import Model
 from identification.models.rational import RationalStructure
 from identification.outcome import Outcome, TestResult

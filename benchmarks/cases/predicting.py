@@ -33,5 +33,6 @@ def _one_period(input: FloatArray, period: int) -> FloatArray:
 
 
 def _steady(model: Model, one: HeldOut, played: FloatArray) -> FloatArray:
-    found = steady_period(model, played, one.sample_time, [one.point], one.logged, covariance_known=False)
+    hold = one.hold or "band"
+    found = steady_period(model, played, one.sample_time, [one.point], one.logged, covariance_known=False, hold=hold)
     return found.output[0]

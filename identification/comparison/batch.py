@@ -8,6 +8,7 @@ import numpy as np
 
 from identification.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from identification.comparison.disturbance import Disturbance
+from identification.signals import HeldInput
 
 EXCITED, ODD, EVEN = 0, 1, 2
 NEGLIGIBLE, SMALLEST = 0.1, 0.2
@@ -29,6 +30,7 @@ class Batch:
     `scaled`: False when only the ratios of the variances are known. `members`: places in the user's list. `logged`:
     quantities (M,) that were written down beside the scheduling variables, by their names. `disturbances`: of each
     record, taken off the outputs; `notes`: what else is to be said of measurements, by their place in the list.
+    `held`: how models in continuous time see the input, None where it is band limited; `hold_stated`: that was said.
     """
 
     points: FloatArray
@@ -49,6 +51,8 @@ class Batch:
     disturbances: tuple[tuple[Disturbance, ...], ...] = ()
     notes: tuple[tuple[int, str], ...] = ()
     logged: Mapping[str, FloatArray] = field(default_factory=dict)
+    held: HeldInput | None = None
+    hold_stated: bool = False
 
     @cached_property
     def real(self) -> BoolArray:

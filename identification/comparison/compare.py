@@ -256,7 +256,7 @@ def _split(found: Fit) -> tuple[TestResult, TestResult, TestResult]:
     """
     rows = found.rows
     explained, ranks = 0.0, 0
-    local = rows.whiten([np.swapaxes(f.gradient * (f.drive * f.factor)[:, None, :], 0, 1) for f in found.flows])
+    local = rows.whiten([np.swapaxes(f.by_coefficients, 0, 1) for f in found.flows])
     for _, chosen in _points(rows):
         basis = orthonormal(local[:, chosen].T)
         explained += float(np.sum((basis.T @ found.residual[chosen]) ** 2))

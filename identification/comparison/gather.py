@@ -57,7 +57,8 @@ def _with_logged(parts: Sequence[Batch], logged: Sequence[Mapping[str, float]]) 
 
 
 def _grid(part: Batch) -> object:
-    return (part.signals is None, part.scaled, part.freedom, part.raw_freedom, part.omega.tobytes())
+    kind = (part.signals is None, part.scaled, part.freedom, part.raw_freedom, part.held, part.hold_stated)
+    return (*kind, part.omega.tobytes())
 
 
 def _joined(group: list[Batch]) -> Batch:
@@ -78,6 +79,8 @@ def _joined(group: list[Batch]) -> Batch:
         half_width=first.half_width,
         ends=ends,
         scaled=first.scaled,
+        held=first.held,
+        hold_stated=first.hold_stated,
         between=between,
         disturbances=tuple(one for part in group for one in part.disturbances),
         notes=tuple(one for part in group for one in part.notes),
@@ -90,7 +93,8 @@ def _one(m: int, data: Measurement, mean_value: bool) -> Batch:
     if isinstance(data, FrequencyResponse):
         return _of_response(m, data)
     if data.period is None or data.period_count < 2:
-        return _of_response(m, LocalPolynomial().estimate(data))
+        response = _of_response(m, LocalPolynomial().estimate(data))
+        return replace(response, held=data.held, hold_stated=data.hold is not None)
     return _of_periodic(m, data, mean_value)
 
 
@@ -121,6 +125,8 @@ def _of_response(m: int, data: FrequencyResponse) -> Batch:
         freedom=freedom,
         raw_freedom=freedom,
         scaled=known,
+        held=data.held,
+        hold_stated=True,
     )
 
 
@@ -148,6 +154,8 @@ def _of_periodic(m: int, record: TimeRecord, mean_value: bool) -> Batch:
         members=np.array([m]),
         signals=np.fft.irfft(mean_input * period, n=period)[None],
         sample_time=record.sample_time,
+        held=record.held,
+        hold_stated=record.hold is not None,
         freedom=noise.freedom,
         raw_freedom=2.0 * (count - 1),
         half_width=noise.half_width,

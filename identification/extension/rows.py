@@ -62,7 +62,7 @@ def plant_tangents(model: Model, rows: Rows, flows: Sequence[Flow]) -> FloatArra
     """∂Ŷ/∂θ_G whitened, (k_G, R)."""
     spectra = []
     for flow in flows:
-        by_zeta = np.swapaxes(flow.gradient * (flow.drive * flow.factor)[:, None, :], 1, 2)
+        by_zeta = np.swapaxes(flow.by_coefficients, 1, 2)
         spectra.append(np.moveaxis(model.dependence.pulled(by_zeta, flow.batch.points), -1, 0))
     return rows.whiten(spectra)
 

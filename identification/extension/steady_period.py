@@ -19,6 +19,7 @@ from identification.places.nonlinear import Added, Feedback
 from identification.places.place import Effect, Flow
 from identification.places.placed import PlacedEffect
 from identification.places.simulate import NoSteadyStateError
+from identification.signals import HeldInput, Hold
 
 FINER = 4
 STEP = 0.1
@@ -56,6 +57,7 @@ def steady_period(
     points: ArrayLike,
     logged: Mapping[str, float] | None = None,
     covariance_known: bool = True,
+    hold: Hold = "band",
 ) -> SteadyPeriod:
     """What the model shows once it has settled, at the operating points (M, s), for one period u (L,) of the input.
 
@@ -63,10 +65,11 @@ def steady_period(
         var y(t) = Σ_i (y(t; β + h r_i) − y(t; β − h r_i))²/(2h)²,   Σ_i r_i r_iᵀ = cov β,   h = 0.1
 
     β are the parameters of plant and effects; without effects their covariance is P_θ. Discrete time is exact on the
-    samples; in continuous time u is the sum of its lines between them, and what forces and sensors add is
-    followed up to four times the Nyquist frequency. `logged`: values of the quantities that the model depends on
-    beside p. Effects of single measurements and disturbances over a period are left out. Where there are several
-    steady states it is one of them, as a rule the one next to that of the linear plant.
+    samples; in continuous time u is the sum of its lines between them, and what forces and sensors add is followed up
+    to four times the Nyquist frequency; where `hold` says that u is held, up to that frequency. `logged`: values of the
+    quantities that the model depends on beside p. Effects of single measurements and disturbances over a period are
+    left out. Where there are several steady states it is one of them, as a rule the one next to that of the linear
+    plant.
 
     Raises NoSteadyStateError, naming the operating point, where there is none: the plant is unstable there, or an
     effect too strong; ShapeError, RangeError and MisuseError for input, points, sampling or quantities that do not fit.
@@ -75,27 +78,34 @@ def steady_period(
     p = kept.dependence.points(points)
     outputs, deviations = [], []
     for point in p:
-        batch = batch_of_period(kept, input, sample_time, point, logged or {})
+        batch = batch_of_period(kept, input, sample_time, point, logged or {}, hold)
         flow = _settled(kept, batch, point)
-        outputs.append(_samples(batch, flow.output, kept))
-        deviations.append(None if kept.joint_covariance is None else _deviation(kept, batch, flow))
+        outputs.append(_samples(batch, flow.output, np.size(input)))
+        deviations.append(None if kept.joint_covariance is None else _deviation(kept, batch, flow, len(outputs[-1])))
     known = [one for one in deviations if one is not None]
     return SteadyPeriod(np.array(outputs), np.array(known) if len(known) == len(outputs) else None, left_out)
 
 
 def batch_of_period(
-    model: Model, input: ArrayLike, sample_time: float, point: FloatArray, logged: Mapping[str, float]
+    model: Model,
+    input: ArrayLike,
+    sample_time: float,
+    point: FloatArray,
+    logged: Mapping[str, float],
+    hold: Hold = "band",
 ) -> Batch:
     """A measurement of nothing at one operating point (s,), with u (L,) as its input over one period.
 
-    U = rfft(u)/L at ω_k = 2πk/(L T); in continuous time on a grid of samples that is four times as fine, the
-    lines beyond L/2 being zero. Raises ShapeError, RangeError, and MisuseError for another sampling than the model's.
+    U = rfft(u)/L at ω_k = 2πk/(L T); in continuous time, unless u is held, on a grid of samples that is four times as
+    fine, the lines beyond L/2 being zero. Raises ShapeError, RangeError, and MisuseError for another sampling than
+    the model's.
     """
     u = finite_floats(input, "input")
     if u.ndim != 1 or len(u) < 2:
         raise ShapeError(f"the input has shape {u.shape}; give one period of two samples or more", "input")
     require_positive(sample_time, "sample time")
-    finer = _finer(model)
+    held = HeldInput(sample_time, hold) if hold != "band" else None
+    finer = 1 if model.structure.is_discrete or held else FINER
     lines = np.fft.rfft(u) / len(u)
     lines[abs(lines) <= ROUNDING * abs(lines).max()] = 0.0
     if finer > 1 and len(u) % 2 == 0:
@@ -114,18 +124,17 @@ def batch_of_period(
         signals=np.fft.irfft(spectrum * length, n=length),
         sample_time=sample_time / finer,
         logged={name: np.array([value], dtype=np.float64) for name, value in logged.items()},
+        held=held,
+        hold_stated=True,
     )
     require_matching(model, (batch,))
     return batch
 
 
-def _finer(model: Model) -> int:
-    return 1 if model.structure.is_discrete else FINER
-
-
-def _samples(batch: Batch, spectra: ComplexArray, model: Model) -> FloatArray:
+def _samples(batch: Batch, spectra: ComplexArray, count: int) -> FloatArray:
     """A signal with lines (1, K) at the samples of the input, (L,)."""
-    return np.asarray(batch.signal(spectra)[0, :: _finer(model)])
+    signal = batch.signal(spectra)[0]
+    return np.asarray(signal[:: len(signal) // count])
 
 
 def _held(model: Model, logged: Mapping[str, float], covariance_known: bool) -> tuple[Model, tuple[LeftOut, ...]]:
@@ -221,13 +230,13 @@ def _jumps_at_zero(one: PlacedEffect, flow: Flow) -> bool:
     return bool(abs(near - still) > 1e-3 * abs(lowest))
 
 
-def _deviation(model: Model, batch: Batch, flow: Flow) -> FloatArray | None:
+def _deviation(model: Model, batch: Batch, flow: Flow, count: int) -> FloatArray | None:
     """The root of the variance of the output (L,), from central differences of the simulation."""
     assert model.joint_covariance is not None
     further = [np.zeros(model.plant_size)]
     further += [np.concatenate([np.zeros(one.size), 1 / one.effect.values()]) for one in model.effects]
     relative = np.concatenate(further)
-    variance = np.zeros(len(_samples(batch, flow.output, model)))
+    variance = np.zeros(count)
     for direction in covariance_root(model.joint_covariance).T:
         size = STEP / max(1.0, float(abs(direction * relative).max()))
         try:
@@ -239,5 +248,5 @@ def _deviation(model: Model, batch: Batch, flow: Flow) -> FloatArray | None:
             )
         except NoSteadyStateError:
             return None
-        variance += (_samples(batch, up - down, model) / (2 * size)) ** 2
+        variance += (_samples(batch, up - down, count) / (2 * size)) ** 2
     return np.sqrt(variance)

@@ -7,9 +7,9 @@ from scipy.linalg import qr
 
 from identification.arrays import ComplexArray, FloatArray
 from identification.filtering import lfilter
-from identification.hold import without_hold
 from identification.likelihood import delayed
 from identification.lti.box_jenkins_start import autoregression, disturbance, high_order_model, reflected
+from identification.models.hold import without_hold
 from identification.models.rational import RationalStructure
 from identification.signals import FrequencyResponse, Measurement, TimeRecord
 

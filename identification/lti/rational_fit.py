@@ -8,9 +8,9 @@ import numpy as np
 from identification.arrays import FloatArray
 from identification.errors import MisuseError, NotIdentifiableError, RangeError
 from identification.estimates import LocalEstimate
-from identification.hold import held_response
 from identification.least_squares import LeastSquaresSolution, levenberg_marquardt
 from identification.likelihood import require_same_sampling, response_errors
+from identification.models.hold import held_response
 from identification.models.model import LocalModel
 from identification.models.rational import RationalStructure
 from identification.outcome import Outcome

@@ -4,14 +4,15 @@ On the coefficients, on the axis of frequencies, as factor, in parallel.
 """
 
 from abc import abstractmethod
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
 
 from identification.arrays import ComplexArray, FloatArray
-from identification.models.rational import RationalStructure
+from identification.models.hold import held_response
 from identification.places.place import Effect, Flow, Setting
+from identification.signals import HeldInput
 
 STEP = 1e-4
 
@@ -62,7 +63,7 @@ class Parallel(Effect):
     def tangent(self, e: FloatArray, flow: Flow) -> ComplexArray:
         """∂Y/∂e (shapes, M, K)."""
         shapes = np.atleast_2d(self.shape(flow.batch.omega))[:, None, :]
-        return np.asarray(shapes * flow.drive * (flow.factor if self.within else 1.0))
+        return np.asarray(shapes * flow.passing * (flow.factor if self.within else 1.0))
 
 
 @dataclass(frozen=True)
@@ -73,18 +74,16 @@ class FrequencyAxis(Effect):
 
     def tangent(self, e: FloatArray, flow: Flow) -> ComplexArray:
         """∂Y/∂e (1, M, K), from central differences along the axis."""
-        ends = [
-            self.response(e[0] + step, flow.setting.structure, flow.setting.zeta, flow.batch.omega)
-            for step in (STEP, -STEP)
-        ]
+        ends = [self.response(e[0] + step, flow.setting, flow.batch.omega, flow.held) for step in (STEP, -STEP)]
         return np.asarray(((ends[0] - ends[1]) / (2 * STEP) * flow.drive * flow.factor)[None])
 
-    def response(
-        self, e: FloatArray, structure: RationalStructure, zeta: FloatArray, omega: FloatArray
-    ) -> ComplexArray:
-        """G((1 + e) ω) (M, K) for e (M,) and ζ (M, n)."""
-        pairs = zip(zeta, e, strict=True)
-        return np.stack([structure.plant_response(one, omega * (1 + change)) for one, change in pairs])
+    def response(self, e: FloatArray, setting: Setting, omega: FloatArray, held: HeldInput | None) -> ComplexArray:
+        """G((1 + e) ω) (M, K) for e (M,), as it is seen through the hold of the input."""
+        found = []
+        for zeta, change in zip(setting.zeta, e, strict=True):
+            stretched = None if held is None else replace(held, step=held.step / float(1 + change))
+            found.append(held_response(setting.structure, zeta, omega * (1 + change), stretched))
+        return np.stack(found)
 
 
 @dataclass(frozen=True)
@@ -99,5 +98,4 @@ class Coefficient(Effect):
 
     def tangent(self, e: FloatArray, flow: Flow) -> ComplexArray:
         """∂Y/∂e (1, M, K)."""
-        change = np.einsum("mnk,mn->mk", flow.gradient, self.direction(flow.setting))
-        return np.asarray((change * flow.drive * flow.factor)[None])
+        return np.asarray(np.einsum("mnk,mn->mk", flow.by_coefficients, self.direction(flow.setting))[None])

@@ -24,8 +24,9 @@ class Actuator(Effect):
 
     def tangent(self, e: FloatArray, flow: Flow) -> ComplexArray:
         """∂Y/∂e (1, M, K)."""
-        change = flow.batch.spectrum(self.shape(flow.input_signal(flow.finer(self))))
-        return np.asarray((flow.response * flow.factor * change)[None])
+        finer = 1 if flow.held else flow.finer(self)
+        change = flow.batch.spectrum(self.shape(flow.input_signal(finer)))
+        return np.asarray((flow.entry * flow.factor * change)[None])
 
 
 @dataclass(frozen=True)

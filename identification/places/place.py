@@ -11,7 +11,9 @@ import numpy as np
 
 from identification.arrays import ComplexArray, FloatArray
 from identification.comparison.batch import Batch
+from identification.models.hold import held_gradient, hold_factor
 from identification.models.rational import RationalStructure
+from identification.signals import HeldInput
 
 Quantity = Literal["frequency", "time", "input", "output", "velocity", "number"]
 
@@ -53,16 +55,17 @@ class Setting:
 class Flow:
     """The signals of a batch as the model now explains them: what signatures are computed from.
 
-    `setting.zeta` includes what effects change of it; `response` (M, K) of the plant core; `gradient`
-    (M, n_plant, K) its derivative by ζ_G; `drive` U (M, K) what enters the core; `core` X (M, K) what leaves it;
-    `factored` (M, K) that and the modes beside it, times all factors; `linear` (M, K) after all that acts linearly;
-    `output` (M, K).
+    `setting.zeta` includes what effects change of it; `response` (M, K) of the plant core, `entry` (M, K) that as the
+    input is seen through its hold; `entering` (M, K) the input behind the actuator; `drive` U (M, K) what enters the
+    core, forces fed back included; `core` X (M, K) what leaves it; `factored` (M, K) that and the modes beside it,
+    times all factors; `linear` (M, K) after all that acts linearly; `output` (M, K).
     """
 
     batch: Batch
     setting: Setting
     response: ComplexArray
-    gradient: ComplexArray
+    entry: ComplexArray
+    entering: ComplexArray
     drive: ComplexArray
     core: ComplexArray
     factored: ComplexArray
@@ -70,6 +73,27 @@ class Flow:
     output: ComplexArray
     factor: ComplexArray
     cache: dict[tuple[str, int], FloatArray] = field(default_factory=dict)
+
+    @cached_property
+    def by_coefficients(self) -> ComplexArray:
+        """∂`factored`/∂ζ_G (M, n_plant, K), that of modes beside the core left out."""
+        structure, zeta, omega = self.setting.structure, self.setting.zeta, self.batch.omega
+        gradient, drive = structure.plant_gradient(zeta, omega), self.drive * self.factor
+        if self.held is None:
+            return np.asarray(gradient * drive[:, None, :])
+        entering = self.entering * self.factor
+        seen = held_gradient(structure, zeta, omega, self.held) * entering[:, None, :]
+        return np.asarray(seen + gradient * (drive - entering)[:, None, :])
+
+    @property
+    def held(self) -> HeldInput | None:
+        """How the plant sees the input between its samples; None in discrete time."""
+        return None if self.setting.structure.is_discrete else self.batch.held
+
+    @cached_property
+    def passing(self) -> ComplexArray:
+        """What enters paths beside the core (M, K)."""
+        return passing(self.drive, self.entering, self.batch.omega, self.held)
 
     @property
     def signals(self) -> FloatArray:
@@ -113,6 +137,11 @@ class Flow:
             return relative
         signal = {"input": self.signals, "output": self.linear_signal, "velocity": self.core_velocity()}[quantity]
         return float(relative * abs(signal).max())
+
+
+def passing(drive: ComplexArray, entering: ComplexArray, omega: FloatArray, held: HeldInput | None) -> ComplexArray:
+    """What enters paths beside the core (M, K): the drive, its input as smooth as the hold makes it."""
+    return drive if held is None else np.asarray(drive + entering * (hold_factor(omega, held) - 1))
 
 
 def derivative(spectra: ComplexArray, batch: Batch) -> ComplexArray:

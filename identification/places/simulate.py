@@ -8,9 +8,12 @@ import numpy as np
 from identification.arrays import ComplexArray, FloatArray
 from identification.comparison.batch import Batch
 from identification.errors import MisuseError
-from identification.places.linear import Coefficient, Factor, FrequencyAxis, Parallel
+from identification.models.hold import held_response
+from identification.places.linear import Coefficient, FrequencyAxis
+from identification.places.linear_path import images, linear_path
 from identification.places.nonlinear import Actuator, Added, Feedback, Sensor
-from identification.places.place import Effect, Flow, Setting, derivative
+from identification.places.place import Effect, Flow, Setting, derivative, passing
+from identification.signals import HeldInput
 
 Acting = tuple[Effect, FloatArray]
 Update = Callable[[ComplexArray], ComplexArray]
@@ -41,23 +44,30 @@ def simulate(
     if batch.signals is None and any(effect.needs_records for effect, _ in acting):
         raise MisuseError("effects that act on signals need periodic records", "effects")
     setting = _changed(setting, acting)
-    gradient = setting.structure.plant_gradient(setting.zeta, batch.omega)
-    response = _response(setting, acting, batch)
+    held = None if setting.structure.is_discrete else batch.held
+    response = _response(setting, acting, batch, None)
+    entry = response if held is None else _response(setting, acting, batch, held)
     entering = _actuated(setting, acting, batch)
-    finer = _finer(setting, acting, Feedback)
-    core, drive = _core(response, entering, _forces(acting), batch, start, finer, solve or fixed_point)
-    factor, within, beside = np.ones_like(response), core, np.zeros_like(core)
-    for effect, e in acting:
-        if isinstance(effect, Factor):
-            factor = factor * effect.factor(e[0][:, None], batch.omega)
-        elif isinstance(effect, Parallel) and effect.within:
-            within = within + effect.response(e, batch.omega) * drive
-        elif isinstance(effect, Parallel):
-            beside = beside + effect.response(e, batch.omega) * drive
-    factored = factor * within
-    linear = factored + beside
+    core, drive = _core(response, entry, entering, acting, setting, batch, start, solve or fixed_point)
+    path, beside_drive = linear_path(acting, batch.omega), passing(drive, entering, batch.omega, held)
+    factored = path.factor * (core + path.within * beside_drive)
+    linear = factored + path.beside * beside_drive
+    if held is not None and path.acts:
+        linear = linear + images(setting, acting, batch.omega, held) * entering
     output = _measured(linear, acting, batch)
-    return Flow(batch, setting, response, gradient, drive, core, factored, linear, output, factor)
+    return Flow(
+        batch,
+        setting,
+        response,
+        entry,
+        entering,
+        drive,
+        core,
+        factored,
+        linear,
+        output,
+        path.factor * np.ones_like(core),
+    )
 
 
 def _changed(setting: Setting, acting: Sequence[Acting]) -> Setting:
@@ -68,11 +78,11 @@ def _changed(setting: Setting, acting: Sequence[Acting]) -> Setting:
     return dataclasses.replace(setting, zeta=zeta)
 
 
-def _response(setting: Setting, acting: Sequence[Acting], batch: Batch) -> ComplexArray:
+def _response(setting: Setting, acting: Sequence[Acting], batch: Batch, held: HeldInput | None) -> ComplexArray:
     for effect, e in acting:
         if isinstance(effect, FrequencyAxis):
-            return effect.response(e[0], setting.structure, setting.zeta, batch.omega)
-    return setting.structure.plant_response(setting.zeta, batch.omega)
+            return effect.response(e[0], setting, batch.omega, held)
+    return held_response(setting.structure, setting.zeta, batch.omega, held)
 
 
 def _finer(setting: Setting, acting: Sequence[Acting], place: type[Actuator] | type[Feedback]) -> int:
@@ -86,7 +96,8 @@ def _actuated(setting: Setting, acting: Sequence[Acting], batch: Batch) -> Compl
     found = [(effect, e[0][:, None]) for effect, e in acting if isinstance(effect, Actuator)]
     if not found:
         return batch.inputs
-    signal = batch.signal(batch.inputs, _finer(setting, acting, Actuator))
+    stepped = batch.held is not None and not setting.structure.is_discrete
+    signal = batch.signal(batch.inputs, 1 if stepped else _finer(setting, acting, Actuator))
     for effect, e in found:
         signal = signal + e * effect.shape(signal)
     return batch.spectrum(signal)
@@ -98,27 +109,30 @@ def _forces(acting: Sequence[Acting]) -> list[tuple[Feedback, FloatArray]]:
 
 def _core(
     response: ComplexArray,
+    entry: ComplexArray,
     entering: ComplexArray,
-    forces: Sequence[tuple[Feedback, FloatArray]],
+    acting: Sequence[Acting],
+    setting: Setting,
     batch: Batch,
     start: ComplexArray | None,
-    finer: int,
     solve: Solver,
 ) -> tuple[ComplexArray, ComplexArray]:
     """X and the drive U − F{f} (M, K)."""
+    forces, driven = _forces(acting), entry * entering
     if not forces:
-        return response * entering, entering
+        return driven, entering
+    finer = _finer(setting, acting, Feedback)
 
-    def drive(core: ComplexArray) -> ComplexArray:
+    def force(core: ComplexArray) -> ComplexArray:
         x, velocity = batch.signal(core, finer), batch.signal(derivative(core, batch), finer)
         total = np.zeros_like(x)
         for effect, e in forces:
             total += e * effect.force(x, velocity)
-        return np.asarray(entering - batch.spectrum(total))
+        return batch.spectrum(total)
 
-    first, limit = (response * entering, 3 * LIMIT) if start is None else (start, LIMIT)
-    core = solve(lambda x: response * drive(x), first, limit)
-    return core, drive(core)
+    first, limit = (driven, 3 * LIMIT) if start is None else (start, LIMIT)
+    core = solve(lambda x: driven - response * force(x), first, limit)
+    return core, entering - force(core)
 
 
 def _measured(linear: ComplexArray, acting: Sequence[Acting], batch: Batch) -> ComplexArray:

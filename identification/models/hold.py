@@ -5,7 +5,7 @@ from scipy.linalg import expm
 
 from identification.arrays import ComplexArray, FloatArray
 from identification.errors import MisuseError
-from identification.models import RationalStructure
+from identification.models.rational import RationalStructure
 from identification.resolvent import resolvent_by_entry
 from identification.signals import FrequencyResponse, HeldInput
 

@@ -5,8 +5,8 @@ import pytest
 from scipy.signal import cont2discrete
 
 from identification.errors import MisuseError, RangeError
-from identification.hold import held_gradient, held_response, hold_factor
-from identification.models import RationalStructure
+from identification.models.hold import held_gradient, held_response, hold_factor
+from identification.models.rational import RationalStructure
 from identification.signals import HeldInput
 
 T = 0.1
@@ -22,7 +22,9 @@ def test_samples_answer_as_a_sampled_model_does(hold, n_b):
     structure = RationalStructure(2, n_b, frequency_scale=scale)
     zeta = np.concatenate([[0.4, 1.3], [0.5, -0.8, 2.0][: n_b + 1]])
     powers = scale ** -np.arange(3.0)[::-1]
-    num, den, _ = cont2discrete((zeta[2:] * powers[2 - n_b :], np.concatenate([[1], zeta[:2]]) * powers), T, ZEROS[hold])
+    num, den, _ = cont2discrete(
+        (zeta[2:] * powers[2 - n_b :], np.concatenate([[1], zeta[:2]]) * powers), T, ZEROS[hold]
+    )
     z = np.exp(1j * OMEGA * T)
     wanted = np.polyval(num.ravel(), z) / np.polyval(den, z)
     assert np.allclose(held_response(structure, zeta, OMEGA, HeldInput(T, hold)), wanted, rtol=1e-9)
@@ -69,7 +71,9 @@ def test_derivatives_are_those_of_the_response(hold, n_b, delay):
 def test_fast_sampling_leaves_the_response_of_the_plant():
     structure, omega = RationalStructure(2, 1), np.array([0.0, 0.5, 1.0, 2.0])
     fast = HeldInput(1e-4, "first")
-    assert np.allclose(held_response(structure, SECOND, omega, fast), structure.plant_response(SECOND, omega), rtol=1e-6)
+    assert np.allclose(
+        held_response(structure, SECOND, omega, fast), structure.plant_response(SECOND, omega), rtol=1e-6
+    )
     zero = HeldInput(1e-3)
     wanted = structure.plant_response(SECOND, omega) * hold_factor(omega, zero)
     assert np.allclose(held_response(structure, SECOND, omega, zero), wanted, rtol=1e-6)
