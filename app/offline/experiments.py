@@ -3,6 +3,8 @@
 from pathlib import Path
 from typing import Any
 
+from rich.console import Console
+
 from app.errors import UnprocessableError
 from app.offline.documents import checked
 from app.offline.workplace import PLANT_ID, Workplace, stored
@@ -36,4 +38,9 @@ def _experiment(
         experiments.check_point(plant, body.root, f"{pointer}/operatingPoint")
     found = place.run("experiment", {**payload, "arrays": place.arrays.put(arrays)})
     document = stored(found.document, f"experiment{index + 1}", jobId=None)
-    return Experiment.model_validate(document), found.arrays or ""
+    experiment = Experiment.model_validate(document)
+    for warning in experiment.understood.warnings:
+        Console(stderr=True).print(
+            f"experiment {index + 1} ({experiment.name or experiment.id}): {warning}", markup=False
+        )
+    return experiment, found.arrays or ""

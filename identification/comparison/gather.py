@@ -15,7 +15,9 @@ from identification.response_tests import real_lines
 from identification.signals import FrequencyResponse, Measurement, TimeRecord
 from identification.spectral.local_polynomial import LocalPolynomial
 from identification.spectral.periodic_average import PeriodicAverage, excited_lines
+from identification.spectral.resolution import check_changing, converter_step, repeated_error
 
+ROUNDS = 0.1
 CLAMPED = (
     "the spectrum of the noise is too steep to be told from how the periods differ; its variance was held at a"
     " thousandth of that around it at some lines"
@@ -34,6 +36,7 @@ def gather(
     """
     if not experiments:
         raise MisuseError("there is nothing to compare with; give at least one experiment", "experiments")
+    check_changing(experiments)
     parts = [_one(m, data, mean_value) for m, data in enumerate(experiments)]
     if logged:
         parts = _with_logged(parts, logged)
@@ -139,8 +142,11 @@ def _of_periodic(m: int, record: TimeRecord, mean_value: bool) -> Batch:
     u, y = (spectra / period for spectra in estimator.steady_spectra(without(record, disturbances)))
     excited = excited_lines(u, estimator.threshold)
     omega = np.asarray(2 * np.pi * np.fft.rfftfreq(period, record.sample_time), dtype=np.float64)
-    noise = _noise(u, y, excited, real_lines(omega, record.sample_time))
-    variances = noise.variance
+    real = real_lines(omega, record.sample_time)
+    noise = _noise(u, y, excited, real)
+    step = converter_step(record.output)
+    rounding = repeated_error(step, float(np.sqrt(np.sum(np.var(y, axis=0, ddof=1) * np.where(real, 1, 2)))))
+    variances = noise.variance + rounding / period * np.where(real, 2.0, 1.0)
     if not mean_value:
         variances[0] = np.inf
     mean_input = np.where(excited, u.mean(axis=0), 0.0)
@@ -162,8 +168,17 @@ def _of_periodic(m: int, record: TimeRecord, mean_value: bool) -> Batch:
         ends=noise.ends[None],
         between=(between_harmonics(record, count),),
         disturbances=(disturbances,),
-        notes=((m, CLAMPED),) if noise.clamped else (),
+        notes=_notes(m, noise, step if rounding > ROUNDS * float(np.median(noise.variance)) * period else 0.0),
     )
+
+
+def _notes(m: int, noise: NoiseOfMean, step: float) -> tuple[tuple[int, str], ...]:
+    coarse = (
+        f"the output stands on a grid of {step:.3g}; its rounding repeats with the period, so that the periods do not"
+        " show it: it was added to the noise"
+    )
+    texts = [CLAMPED] * (noise.clamped > 0) + [coarse] * (step > 0)
+    return tuple((m, text) for text in texts)
 
 
 def _noise(u: ComplexArray, y: ComplexArray, excited: BoolArray, real: BoolArray) -> NoiseOfMean:

@@ -23,6 +23,7 @@ from identification.models.model import LocalModel
 from identification.models.rational import RationalStructure
 from identification.outcome import Outcome, TestResult
 from identification.signals import TimeRecord
+from identification.spectral.resolution import require_changing
 from identification.whiteness import input_independence, whiteness
 
 LARGEST = 1e60
@@ -59,6 +60,7 @@ class PredictionError:
         Raises MisuseError when structure and record do not fit each other, and NotIdentifiableError when the record is
         shorter than the number of unknowns, or its input or output is zero throughout (RangeError: beyond 1e±60).
         """
+        require_changing(record)
         free = free_parameters(structure, self.initial_conditions)
         _require_information(structure, record, free)
         scales = _rms(record.input), _rms(record.output)

@@ -9,6 +9,7 @@ import numpy as np
 from identification.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from identification.errors import MisuseError, RangeError
 from identification.signals import FrequencyResponse, TimeRecord
+from identification.spectral.resolution import require_changing
 
 CHUNK = 4096
 
@@ -72,6 +73,7 @@ class LocalPolynomial:
 
     def estimate(self, record: TimeRecord) -> FrequencyResponse:
         """Ĝ with variances at lines of the record; raises MisuseError when it is too short or its input too poor."""
+        require_changing(record)
         apart = record.period_count
         samples = len(record) if record.period is None else apart * record.period
         count, half = (samples - 1) // 2, self.half_window * apart

@@ -10,6 +10,7 @@ from identification.arrays import BoolArray, ComplexArray, FloatArray
 from identification.errors import MisuseError, RangeError
 from identification.response_tests import real_lines
 from identification.signals import FrequencyResponse, TimeRecord
+from identification.spectral.resolution import converter_step, repeated_error, require_changing
 
 
 @dataclass(frozen=True)
@@ -26,8 +27,8 @@ class PeriodicAverage:
     Excited lines are those with |Ū_k| above `threshold` times the largest and above four of its standard deviations.
     With `drop_periods` None, leading periods, at most half of them, are dropped while the energy of their difference
     from the mean of the later half is beyond the 99.9 % quantile of what the noise there gives (F distribution).
-    Variances below rounding errors are set to those. Assumes an exact period, open loop, and noise whose
-    correlation is short against the period.
+    Variances below rounding errors are set to those; the rounding of a converter whose step shows is added. Assumes
+    an exact period, open loop, and noise whose correlation is short against the period.
     """
 
     kind: ClassVar[str] = "periodic_average"
@@ -71,7 +72,8 @@ class PeriodicAverage:
         response = y[:, lines].mean(axis=0) / mean
         errors = y[:, lines] - response * u[:, lines]
         power = np.sum(abs(errors) ** 2, axis=0) / (count - 1) * np.where(real[lines], 2.0, 1.0)
-        variance = np.maximum(power, _rounding(u, y, response)) / (count * abs(mean) ** 2)
+        power = np.maximum(power, _rounding(u, y, response)) + self._converter(record, y) * np.where(real[lines], 2, 1)
+        variance = power / (count * abs(mean) ** 2)
         return FrequencyResponse(
             omega[lines],
             response,
@@ -82,9 +84,21 @@ class PeriodicAverage:
             held=record.held if self.continuous_time else None,
         )
 
+    @staticmethod
+    def _converter(record: TimeRecord, y: ComplexArray) -> float:
+        """The power of the rounding of the converter at each line; it repeats, so that periods do not lessen it."""
+        step = converter_step(record.output)
+        if step == 0:
+            return 0.0
+        period, count = _period(record), len(y)
+        inner = np.where(real_lines(np.asarray(2 * np.pi * np.fft.rfftfreq(period), dtype=np.float64), 1.0), 1, 2)
+        deviation = float(np.sqrt(np.sum(np.var(y, axis=0, ddof=1) * inner))) / period
+        return count * period * repeated_error(step, deviation)
+
     def steady_spectra(self, record: TimeRecord) -> tuple[ComplexArray, ComplexArray]:
         """The spectra of input and output of the steady periods, each (P, period//2 + 1)."""
         period = _period(record)
+        require_changing(record)
         count = record.period_count
         if self.drop_periods is not None and count - self.drop_periods < 2:
             raise MisuseError(

@@ -1,7 +1,8 @@
 """Identifies a parameter-varying model from experiments."""
 
 import dataclasses
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from typing import Any
 
 from app import __version__
@@ -63,7 +64,7 @@ def _fitted_data(
         return record
     context.progress(0.05, f"the frequency response of experiment {index + 1}")
     assert request.spectral_estimator is not None, "checked when the job was submitted"
-    with field_named({}, f"/experimentIds/{index}"), within_doubles():
+    with within_doubles(), _place_named(index, record):
         response: FrequencyResponse = request.spectral_estimator.build().estimate(record)
     return response if structure.is_discrete else dataclasses.replace(response, sample_time=None)
 
@@ -94,12 +95,19 @@ def _local_estimates(
     estimates = []
     for i, measurement in enumerate(data):
         context.progress(0.1 + 0.7 * i / len(data), f"local model {i + 1} of {len(data)}")
-        try:
+        with _place_named(i, measurement):
             estimates.append(estimator.estimate(structure, measurement))
-        except MisuseError as error:
-            where = ", ".join(f"{value:g}" for value in measurement.operating_point)
-            raise MisuseError(f"the experiment at {where}: {error}", f"/experimentIds/{i}") from error
     return tuple(estimates)
+
+
+@contextmanager
+def _place_named(index: int, measurement: Measurement) -> Iterator[None]:
+    """Misuse of one experiment is named by its place in the request and its operating point."""
+    try:
+        yield
+    except MisuseError as error:
+        where = ", ".join(f"{value:g}" for value in measurement.operating_point)
+        raise MisuseError(f"the experiment at {where}: {error}", f"/experimentIds/{index}") from error
 
 
 def _document(
