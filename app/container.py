@@ -5,9 +5,12 @@ from app.jobs.executor import LocalExecutor
 from app.jobs.hub import Hub
 from app.jobs.journal import Journal
 from app.jobs.ledger import Ledger
+from app.services.job_events import JobEvents
+from app.services.readiness import Readiness
 from app.settings import Settings
 from app.store.arrays import ArrayStore
 from app.store.database import Database
+from app.store.identifiers import observe
 from app.store.lock import DirectoryLock
 from app.store.resources import ResourceRepository
 
@@ -22,29 +25,41 @@ class Container:
         kinds = discover_kinds(settings.task_packages)
         self.settings = settings
         self.database = Database(settings.resolved_database_url)
-        self.arrays = ArrayStore(settings.arrays_dir, settings.max_array_bytes)
+        self.arrays = ArrayStore(settings.arrays_dir, settings.max_array_bytes, settings.disk_reserve_bytes)
         self.resources = ResourceRepository(self.database)
         self.hub = Hub()
         self._journal = Journal(self.database, self.hub)
         self._executor = LocalExecutor(self._journal, kinds, settings)
         self.ledger = Ledger(self.database, kinds, self._executor, self.hub)
+        self.job_events = JobEvents(self.ledger, self.hub, settings.max_event_streams)
+        self.readiness = Readiness(self.database, settings.data_dir, settings.disk_reserve_bytes)
+        self._started = False
         self._lock = DirectoryLock(settings.data_dir)
 
     def start(self) -> None:
-        """Take the data directory, bring the tables up to date, go on with interrupted jobs."""
+        """Take the data directory, bring the tables up to date, go on with interrupted jobs; once only."""
+        if self._started:
+            return
         self.settings.data_dir.mkdir(mode=0o700, parents=True, exist_ok=True)
         self._lock.acquire()
         try:
             self.arrays.prepare()
             self.database.migrate()
+            observe(self.database.newest_identifier() or "0")
             self._journal.recover(self.settings.job_attempts)
         except BaseException:
             self._lock.release()
             raise
         self._executor.start()
+        self._started = True
+
+    def stop_work(self) -> None:
+        """End the jobs, which are queued again, and the streams of events; requests are answered as before."""
+        self._executor.stop()
+        self.hub.close()
 
     def stop(self) -> None:
         """End the jobs and let go of everything."""
-        self._executor.stop()
+        self.stop_work()
         self.database.close()
         self._lock.release()

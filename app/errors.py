@@ -92,6 +92,24 @@ class UnprocessableError(ProblemError):
         return cls(detail, [FieldProblem(pointer=pointer, detail=detail, location=location)])
 
 
+class TooSlowError(ProblemError):
+    """The body of the request did not come in time."""
+
+    status, slug, title = 408, "request-timeout", "Request timeout"
+
+
+class UnavailableError(ProblemError):
+    """The service cannot do this now; the same request may succeed later."""
+
+    status, slug, title = 503, "service-unavailable", "Service unavailable"
+
+
+class NoRoomError(ProblemError):
+    """The disk is full; nothing of the request was kept."""
+
+    status, slug, title = 507, "insufficient-storage", "Insufficient storage"
+
+
 class InternalError(ProblemError):
     """A fault of the service; the log has the cause, the answer has not."""
 

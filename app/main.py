@@ -12,7 +12,7 @@ from starlette.middleware import Middleware
 import app.routers
 from app import __version__
 from app.container import Container
-from app.middleware import BodyLimitGuard, LoopbackGuard, TokenGuard
+from app.middleware import BodyGuard, FaultGuard, LoopbackGuard, TokenGuard
 from app.openapi_schema import install_openapi, operation_id
 from app.pages.security import PageHeaders
 from app.pages.site import add_pages
@@ -61,7 +61,8 @@ def _guards(settings: Settings) -> list[Middleware]:
     """Outermost first."""
     token = settings.bearer_token
     who = Middleware(LoopbackGuard) if token is None else Middleware(TokenGuard, token=token)
-    return [Middleware(PageHeaders), who, Middleware(BodyLimitGuard, most_bytes=settings.max_body_bytes)]
+    body = Middleware(BodyGuard, most_bytes=settings.max_body_bytes, seconds=settings.request_seconds)
+    return [Middleware(FaultGuard), Middleware(PageHeaders), who, body]
 
 
 def _routers() -> list[APIRouter]:

@@ -1,18 +1,32 @@
 """Guards in front of the routes: who is asking, from where, and how much is sent. Plain ASGI."""
 
+import asyncio
 import hmac
+import logging
+import time
 from urllib.parse import urlsplit
 
 from starlette.datastructures import Headers
 from starlette.exceptions import HTTPException
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from app.errors import BadRequestError, ContentTooLargeError, ForbiddenError, ProblemError, UnauthorizedError
+from app.errors import (
+    BadRequestError,
+    ContentTooLargeError,
+    ForbiddenError,
+    ProblemError,
+    TooSlowError,
+    UnauthorizedError,
+)
 from app.pages.security import is_page
-from app.problem_handlers import answer
+from app.problem_handlers import answer, answer_to_fault
 from app.settings import is_loopback
+from app.store.faults import fault_of
 
-OPEN_PATHS = ("/v1/health",)
+logger = logging.getLogger(__name__)
+OPEN_PATHS = ("/v1/health", "/v1/readiness")
+SLOWEST_BYTES_PER_SECOND = 16 * 1024
+TOO_SLOW = "the body did not come in time; send it faster, or raise LPV_OED_REQUEST_SECONDS"
 
 
 class Guard:
@@ -36,6 +50,32 @@ class Guard:
     def receiver(self, receive: Receive) -> Receive:
         """What the application reads the body from."""
         return receive
+
+
+class FaultGuard:
+    """The outermost: what no handler knows is written into the log and answered, and the connection goes on."""
+
+    def __init__(self, app: ASGIApp) -> None:
+        self._app = app
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        if scope["type"] != "http":
+            return await self._app(scope, receive, send)
+        begun = False
+
+        async def watched(message: Message) -> None:
+            nonlocal begun
+            begun = True
+            await send(message)
+
+        try:
+            await self._app(scope, receive, watched)
+        except Exception as fault:
+            if begun:
+                raise  # what was sent is no whole answer, so the connection must end
+            known = fault_of(fault) is not None
+            logger.error("%s %r failed: %s", scope["method"], scope["path"], fault, exc_info=None if known else fault)
+            await answer_to_fault(fault, scope["path"])(scope, receive, send)
 
 
 class LoopbackGuard(Guard):
@@ -75,12 +115,16 @@ class TokenGuard(Guard):
             )
 
 
-class BodyLimitGuard(Guard):
-    """Refuses a body beyond the limit, by its announced length or as soon as more has come in."""
+class BodyGuard(Guard):
+    """Refuses a body beyond the limit, by its announced length or as soon as more has come in, or that is too slow.
 
-    def __init__(self, app: ASGIApp, most_bytes: int) -> None:
+    A body may take `seconds` and a second more for every SLOWEST_BYTES_PER_SECOND of it that have come.
+    """
+
+    def __init__(self, app: ASGIApp, most_bytes: int, seconds: float) -> None:
         super().__init__(app)
         self._most_bytes = most_bytes
+        self._seconds = seconds
 
     @property
     def _refusal(self) -> str:
@@ -93,11 +137,20 @@ class BodyLimitGuard(Guard):
 
     def receiver(self, receive: Receive) -> Receive:
         received = 0
+        complete = False
+        began = time.monotonic()
 
         async def limited() -> Message:
-            nonlocal received
-            message = await receive()
+            nonlocal received, complete
+            if complete:
+                return await receive()
+            end = began + self._seconds + received / SLOWEST_BYTES_PER_SECOND
+            try:
+                message = await asyncio.wait_for(receive(), end - time.monotonic())
+            except TimeoutError:
+                raise HTTPException(TooSlowError.status, TOO_SLOW, {"Connection": "close"}) from None
             received += len(message.get("body", b""))
+            complete = not message.get("more_body", False)
             if received > self._most_bytes:
                 raise HTTPException(ContentTooLargeError.status, self._refusal)
             return message

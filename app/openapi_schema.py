@@ -20,8 +20,9 @@ DESCRIPTION = (
 )
 _METHODS = ("get", "put", "post", "delete", "patch")
 _ALWAYS = {400: "The request cannot be read", 401: "The bearer token is missing or wrong"}
-_ALWAYS |= {403: "This origin is not answered", 500: "A fault of the service"}
-_WITH_BODY = {413: "The body is too large", 415: "The content type of the body is not the expected one"}
+_ALWAYS |= {403: "This origin is not answered", 500: "A fault of the service", 503: "The database is out of reach"}
+_WITH_BODY = {408: "The body did not come in time", 507: "The disk is full; nothing was kept"}
+_WITH_BODY |= {413: "The body is too large", 415: "The content type of the body is not the expected one"}
 
 
 def operation_id(route: APIRoute) -> str:

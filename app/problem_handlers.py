@@ -11,7 +11,9 @@ from starlette.routing import Match
 from app.errors import (
     BadRequestError,
     InternalError,
+    NoRoomError,
     ProblemError,
+    UnavailableError,
     UnprocessableError,
     UnsupportedMediaTypeError,
     problem_of_status,
@@ -20,8 +22,15 @@ from app.errors import (
 from app.json_pointer import body_pointer, field_pointer, pointer
 from app.schemas.common import FieldProblem
 from app.store.arrays import ArraysTooLargeError
+from app.store.faults import fault_of, is_full
 from identification.errors import MisuseError
 
+NO_ROOM = (
+    "the disk of the server is full, and nothing of this request was kept; free some room below LPV_OED_DATA_DIR"
+    " (and the folder for temporary files), then send the same request again"
+)
+DAMAGED = "the database is damaged; stop the server and restore a backup with lpv-oed restore"
+LATER = {"Retry-After": "30"}
 METHODS = ("GET", "HEAD", "POST", "PUT", "PATCH", "DELETE")
 
 
@@ -32,12 +41,41 @@ def add_problem_handlers(application: FastAPI) -> None:
     application.add_exception_handler(HTTPException, _on_http_exception)
     application.add_exception_handler(MisuseError, _on_misuse)
     application.add_exception_handler(ArraysTooLargeError, _on_arrays_too_large)
-    application.add_exception_handler(Exception, _on_fault)
 
 
 def answer(error: ProblemError, path: str) -> Response:
     """The HTTP answer of an error."""
     return problem_response(error.problem(path), error.headers)
+
+
+def answer_to_fault(error: Exception, path: str) -> Response:
+    """The HTTP answer to what no handler knows: the disk, the database, or a fault of the service."""
+    return answer(_of_storage(error) or InternalError("a fault of the service; its log has the cause"), path)
+
+
+def _of_storage(error: Exception) -> ProblemError | None:
+    match fault_of(error):
+        case "full":
+            return NoRoomError(NO_ROOM, headers=LATER)
+        case "unreachable":
+            return UnavailableError("the database cannot be reached now; send the same request again", headers=LATER)
+        case "damaged":
+            return UnavailableError(DAMAGED)
+    return None
+
+
+def unreadable(cause: BaseException) -> ProblemError:
+    """Why the body of a request could not be read."""
+    if is_full(cause):
+        return NoRoomError(NO_ROOM, headers=LATER)
+    match cause:
+        case UnicodeDecodeError():
+            return BadRequestError(f"the body is no JSON in UTF-8: byte {cause.start} cannot be decoded")
+        case RecursionError():
+            return BadRequestError("the body is nested too deeply; put fewer lists and objects into each other")
+        case ValueError() if "digits" in str(cause):
+            return BadRequestError("the body has an integer of too many digits; write it as a number with exponent")
+    return BadRequestError(f"the body cannot be read: {cause}" if str(cause) else "the body cannot be read")
 
 
 async def _on_problem_error(request: Request, error: Exception) -> Response:
@@ -48,6 +86,8 @@ async def _on_problem_error(request: Request, error: Exception) -> Response:
 async def _on_http_exception(request: Request, error: Exception) -> Response:
     assert isinstance(error, HTTPException)
     headers = {"Allow": ", ".join(_allowed_methods(request))} if error.status_code == 405 else error.headers
+    if error.status_code == 400 and error.__cause__ is not None:
+        return answer(unreadable(error.__cause__), request.url.path)
     return problem_response(problem_of_status(error.status_code, str(error.detail)), headers)
 
 
@@ -59,10 +99,6 @@ async def _on_misuse(request: Request, error: Exception) -> Response:
 
 async def _on_arrays_too_large(request: Request, error: Exception) -> Response:
     return answer(UnprocessableError(str(error)), request.url.path)
-
-
-async def _on_fault(request: Request, error: Exception) -> Response:
-    return answer(InternalError("a fault of the service; its log has the cause"), request.url.path)
 
 
 async def _on_validation_error(request: Request, error: Exception) -> Response:

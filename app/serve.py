@@ -1,11 +1,58 @@
 """The server process."""
 
+import os
+import socket
+from functools import partial
+from threading import Timer
+from typing import Any
+
 import uvicorn
+from anyio.to_thread import run_sync
+from fastapi import FastAPI
 from pydantic import ValidationError
 from pydantic_settings import SettingsError
 
 from app.main import create_app
+from app.protocol import PatientProtocol
 from app.settings import Settings
+from app.store.faults import fault_of
+from app.store.lock import InUseError
+
+SECONDS_FOR_ANSWERS = 3
+SECONDS_TO_STOP = 9.0
+WHY_NOT = {
+    "full": "the disk of the data directory is full; free some room below LPV_OED_DATA_DIR and start again",
+    "unreachable": "the database cannot be reached; look at LPV_OED_DATABASE_URL and whether it runs",
+    "damaged": "the database is damaged; put it aside and restore a backup with lpv-oed restore",
+}
+
+
+class Server(uvicorn.Server):
+    """Stops within ten seconds of SIGTERM, whatever clients do: the jobs first, which are queued again, then the rest.
+
+    What keeps it from starting, such as a full disk, ends the program with what to change.
+    """
+
+    def __init__(self, config: uvicorn.Config, application: FastAPI) -> None:
+        super().__init__(config)
+        self._container = application.state.container
+
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        try:
+            await run_sync(self._container.start)
+        except Exception as error:
+            reason = why_not_started(error)
+            if reason is None:
+                raise
+            raise SystemExit(f"lpv-oed cannot start: {reason}") from None
+        await super().startup(sockets)
+
+    async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+        end = Timer(SECONDS_TO_STOP, os._exit, [1])  # everything that was acknowledged survives this as well
+        end.daemon = True
+        end.start()
+        await run_sync(self._container.stop_work)
+        await super().shutdown(sockets)
 
 
 def serve() -> None:
@@ -13,13 +60,38 @@ def serve() -> None:
 
     Settings that are refused end the program with what to change.
     """
+    settings = settings_or_exit()
+    application = create_app(settings)
+    protocol: Any = partial(PatientProtocol, head_seconds=settings.request_seconds)
+    config = uvicorn.Config(
+        application,
+        host=settings.host,
+        port=settings.port,
+        http=protocol,
+        access_log=False,
+        timeout_graceful_shutdown=SECONDS_FOR_ANSWERS,
+    )
+    Server(config, application).run()
+
+
+def why_not_started(error: Exception) -> str | None:
+    """What keeps the service from starting and what to do, where it is not a fault of the program."""
+    fault = fault_of(error)
+    if fault is not None:
+        return WHY_NOT[fault]
+    if isinstance(error, InUseError | OSError):
+        return str(error)
+    return None
+
+
+def settings_or_exit() -> Settings:
+    """The settings of the environment; ends the program with what to change when they are refused."""
     try:
-        settings = Settings()
+        return Settings()
     except ValidationError as error:
         raise SystemExit("\n".join(_explained(error))) from None
     except SettingsError as error:
         raise SystemExit(str(error)) from None
-    uvicorn.run(create_app(settings), host=settings.host, port=settings.port, access_log=False)
 
 
 def _explained(error: ValidationError) -> list[str]:

@@ -1,6 +1,7 @@
 """Settings of the service, read from the environment (LPV_OED_…)."""
 
 import ipaddress
+import re
 from pathlib import Path
 from typing import Self
 
@@ -9,6 +10,8 @@ from pydantic_settings import BaseSettings, SettingsConfigDict
 
 MEBIBYTE = 1024 * 1024
 GIBIBYTE = 1024 * MEBIBYTE
+TOKEN = re.compile(r"[A-Za-z0-9._~+/=-]{16,}", re.ASCII)
+LEAST_JOB_MEMORY = 512 * MEBIBYTE
 
 
 class Settings(BaseSettings):
@@ -23,17 +26,34 @@ class Settings(BaseSettings):
     database_url: str | None = Field(default=None, description="SQLAlchemy URL; default: SQLite in the data directory")
     workers: int = Field(default=2, ge=1, le=256, description="jobs that run at the same time")
     job_time_limit_seconds: float = Field(default=3600.0, gt=0, description="a job that runs longer is ended")
-    job_memory_limit_bytes: int = Field(default=4 * GIBIBYTE, ge=256 * MEBIBYTE, description="address space of a job")
+    job_memory_limit_bytes: int = Field(
+        default=4 * GIBIBYTE,
+        ge=LEAST_JOB_MEMORY,
+        description="address space of a job; its libraries alone take 430 MiB",
+    )
     job_attempts: int = Field(default=100, ge=1, description="server deaths during one job after which it fails")
+    job_kills: int = Field(default=5, ge=1, description="times that a job's process is killed after which it fails")
     jobs_per_child: int = Field(default=100, ge=1, description="jobs that one child process runs before it is replaced")
     task_packages: tuple[str, ...] = Field(default=("app.jobs.tasks",), description="packages with the kinds of jobs")
+    disk_reserve_bytes: int = Field(
+        default=64 * MEBIBYTE,
+        ge=0,
+        description="room on the disk of the data directory below which nothing is taken in",
+    )
     max_body_bytes: int = Field(default=64 * MEBIBYTE, ge=1024, description="largest request body")
+    max_event_streams: int = Field(default=1000, ge=1, description="streams of job events at the same time")
+    request_seconds: float = Field(
+        default=20.0, gt=0, description="time for the head of a request, and for its body beside a second per 16 KiB"
+    )
     max_array_bytes: int = Field(default=GIBIBYTE, ge=1024, description="largest set of arrays kept as one file")
 
     @model_validator(mode="after")
     def _beyond_loopback_only_with_token(self) -> Self:
-        if self.token is not None and not self.token.get_secret_value():
-            raise ValueError("LPV_OED_TOKEN is empty; leave it out or give a token")
+        if self.token is not None and not TOKEN.fullmatch(self.token.get_secret_value()):
+            raise ValueError(
+                "LPV_OED_TOKEN must be 16 letters, digits or any of -._~+/= or more, without blanks, such as"
+                " openssl rand -hex 16 gives; or leave it out"
+            )
         if self.token is None and not is_loopback(self.host):
             raise ValueError(
                 f"refusing to listen on {self.host} without authentication; "

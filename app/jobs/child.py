@@ -15,6 +15,7 @@ from app.jobs.outcomes import Crashed, Ended, Faulted, Outcome, TaskOutcome, Tim
 from app.jobs.records import ClaimedJob
 from app.jobs.worker import ChildOptions, initialize, run_task
 from app.settings import Settings
+from app.store.identifiers import new_identifier
 
 logger = logging.getLogger(__name__)
 SECONDS_OF_GRACE = 60.0
@@ -70,7 +71,7 @@ class Child:
 
     def _run_once(self, job: ClaimedJob, module: str, wanted: Callable[[], bool]) -> Outcome:
         limit = self._settings.job_time_limit_seconds
-        arguments = (module, job.payload, job.id, job.attempt)
+        arguments = (module, job.payload, job.id, job.attempt, new_identifier())
         future = self._working_pool().schedule(run_task, args=arguments, timeout=limit)
         with self._lock:
             self._present = _Present(job.id, future)
@@ -108,7 +109,11 @@ class Child:
     def _new_pool(self) -> ProcessPool:
         settings = self._settings
         options = ChildOptions(
-            os.getpid(), settings.job_memory_limit_bytes, settings.arrays_dir.resolve(), settings.max_array_bytes
+            os.getpid(),
+            settings.job_memory_limit_bytes,
+            settings.arrays_dir.resolve(),
+            settings.max_array_bytes,
+            settings.disk_reserve_bytes,
         )
         return ProcessPool(
             max_workers=1,

@@ -8,13 +8,16 @@ from app.jobs.progress import ProgressPump
 from app.jobs.slot import Slot
 from app.jobs.worker import ONE_THREAD
 from app.settings import Settings
+from app.store.room import Room
 
 
 class LocalExecutor:
     """As many slots as `settings.workers`. Start after `Journal.recover`; children start with the first jobs."""
 
     def __init__(self, journal: Journal, kinds: Mapping[str, str], settings: Settings) -> None:
-        self._slots = [Slot(journal, kinds, settings) for _ in range(settings.workers)]
+        room = Room(settings.data_dir, settings.disk_reserve_bytes)
+        self._slots = [Slot(journal, kinds, settings, room) for _ in range(settings.workers)]
+        self._stopped = False
         self._progress = ProgressPump(journal, [slot.child.reports for slot in self._slots])
 
     def start(self) -> None:
@@ -26,7 +29,10 @@ class LocalExecutor:
             slot.start()
 
     def stop(self) -> None:
-        """End all running jobs, which are queued again, and all child processes."""
+        """End all running jobs, which are queued again, and all child processes; does nothing the second time."""
+        if self._stopped:
+            return
+        self._stopped = True
         for slot in self._slots:
             slot.stop()
         for slot in self._slots:

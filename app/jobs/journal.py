@@ -4,11 +4,11 @@ A run is known by the job and its attempt. Reports of a run that is no longer th
 again after a crash) change nothing, so nothing can be recorded twice.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from datetime import UTC, datetime
 from typing import Any
 
-from sqlalchemy import select
+from sqlalchemy import or_, select
 from sqlalchemy.orm import Session
 
 from app.jobs import problems
@@ -21,6 +21,7 @@ from app.store.resources import Resource, add_resource
 from app.store.rows import JobRow
 
 PATIENT_ATTEMPTS = 3
+AGAIN = "waiting to be started again"
 Run = tuple[str, int]
 Progress = tuple[float, str]
 
@@ -28,17 +29,21 @@ Progress = tuple[float, str]
 class Journal:
     """Takes jobs from the ledger and writes down what became of them. Thread-safe."""
 
-    def __init__(self, database: Database, hub: Hub) -> None:
+    def __init__(self, database: Database, hub: Hub, server: str | None = None) -> None:
         self._database = database
         self._hub = hub
+        self._server = server
 
-    def recover(self, most_attempts: int) -> int:
-        """Queue again what was running when the server died; returns how many jobs. Only before any run."""
-        query = select(JobRow).where(JobRow.state == "running").order_by(JobRow.id)
+    def recover(self, most_attempts: int, living: Collection[str] = ()) -> int:
+        """Queue again what was running on servers that are not `living`; returns how many jobs."""
+        query = select(JobRow).where(JobRow.state == "running").order_by(JobRow.id).with_for_update(skip_locked=True)
+        if living:
+            query = query.where(or_(JobRow.server.is_(None), JobRow.server.not_in(living)))
         with self._database.write() as session:
             rows = session.scalars(query).all()
             for row in rows:
                 _interrupted(session, row, most_attempts)
+        self._hub.notify(*(row.id for row in rows))
         return len(rows)
 
     def claim(self) -> ClaimedJob | None:
@@ -57,10 +62,11 @@ class Journal:
             if row is None:
                 return None
             row.attempts += 1
+            row.server = self._server
             row.message = "started"
             move(session, row, "running")
             claimed = ClaimedJob(row.id, row.kind, row.attempts, row.payload)
-        self._hub.notify()
+        self._hub.notify(claimed.id)
         return claimed
 
     def is_running(self, run: Run) -> bool:
@@ -76,7 +82,7 @@ class Journal:
                 if row is not None:
                     row.fraction, row.message = max(fraction, row.fraction), message
                     tell(session, row, "progress")
-        self._hub.notify()
+        self._hub.notify(*(job_id for job_id, _ in reports))
 
     def succeed(self, run: Run, document: dict[str, Any], arrays: str | None, beside: Sequence[Made] = ()) -> bool:
         """Keep what a run made and finish its job, together; False when it is no longer the present run."""
@@ -88,7 +94,7 @@ class Journal:
                 add_resource(session, _resource(row, document, arrays))
                 row.fraction, row.message = 1.0, "done"
                 move(session, row, "succeeded")
-        self._hub.notify()
+        self._hub.notify(run[0])
         return row is not None
 
     def fail(self, run: Run, problem: dict[str, Any]) -> bool:
@@ -97,16 +103,28 @@ class Journal:
             row = _present(session, run)
             if row is not None:
                 _fail(session, row, problem)
-        self._hub.notify()
+        self._hub.notify(run[0])
         return row is not None
 
-    def requeue(self, run: Run) -> None:
-        """Give a job back that could not be finished because the server stops."""
+    def requeue(self, run: Run, message: str = AGAIN) -> None:
+        """Give a job back that could not be finished, as when the server stops."""
         with self._database.write() as session:
             row = _present(session, run)
             if row is not None:
-                _requeue(session, row)
-        self._hub.notify()
+                _requeue(session, row, message)
+        self._hub.notify(run[0])
+
+    def killed(self, run: Run, signal: int, most_kills: int) -> None:
+        """The process of a run was ended from outside: queue the job again, or fail it when that is one too many."""
+        with self._database.write() as session:
+            row = _present(session, run)
+            if row is not None:
+                row.kills += 1
+                if row.kills >= most_kills:
+                    _fail(session, row, problems.killed(signal, row.kills))
+                else:
+                    _requeue(session, row)
+        self._hub.notify(run[0])
 
 
 def _present(session: Session, run: Run) -> JobRow | None:
@@ -122,8 +140,8 @@ def _interrupted(session: Session, row: JobRow, most_attempts: int) -> None:
         _requeue(session, row)
 
 
-def _requeue(session: Session, row: JobRow) -> None:
-    row.fraction, row.message = 0.0, "waiting to be started again"
+def _requeue(session: Session, row: JobRow, message: str = AGAIN) -> None:
+    row.fraction, row.message, row.server = 0.0, message, None
     move(session, row, "queued", event="requeued")
 
 

@@ -73,7 +73,6 @@ class Ledger:
         )
         record = self._insert_once(row)
         self._dispatcher.wake()
-        self._hub.notify()
         return record
 
     def _insert_once(self, row: JobRow) -> JobRecord:
@@ -125,7 +124,7 @@ class Ledger:
             move(session, row, "cancelled")
             record = record_of(row)
         self._dispatcher.cancel(job_id)
-        self._hub.notify()
+        self._hub.notify(job_id)
         return record
 
 

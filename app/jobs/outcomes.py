@@ -1,7 +1,10 @@
 """How a run can end, as data."""
 
+import signal
 from dataclasses import dataclass
 from typing import Any
+
+FROM_OUTSIDE = frozenset({signal.SIGKILL, signal.SIGTERM, signal.SIGINT, signal.SIGHUP})
 
 
 @dataclass(frozen=True)
@@ -38,6 +41,11 @@ class OutOfMemory:
 
 
 @dataclass(frozen=True)
+class NoRoom:
+    """What the task made could not be kept, because the disk is full."""
+
+
+@dataclass(frozen=True)
 class Faulted:
     """The task raised anything else."""
 
@@ -55,11 +63,16 @@ class Crashed:
 
     exit_code: int | None
 
+    @property
+    def from_outside(self) -> bool:
+        """Whether someone ended the process, as an operator or the system short of memory does."""
+        return self.exit_code is not None and -self.exit_code in FROM_OUTSIDE
+
 
 @dataclass(frozen=True)
 class Ended:
     """The child process was ended on purpose: the job was cancelled, or the server stops."""
 
 
-TaskOutcome = Succeeded | Refused | OutOfMemory | Faulted
+TaskOutcome = Succeeded | Refused | OutOfMemory | NoRoom | Faulted
 Outcome = TaskOutcome | TimedOut | Crashed | Ended

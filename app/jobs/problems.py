@@ -44,6 +44,15 @@ def out_of_memory(limit_bytes: int) -> dict[str, Any]:
     return _problem("memory-limit", "Memory limit reached", 500, detail)
 
 
+def killed(signal: int, times: int) -> dict[str, Any]:
+    """The child process was ended from outside, again and again."""
+    detail = (
+        f"the process of the job was ended by signal {signal}, {times} times in all, as by a machine that is short of "
+        "memory; run fewer jobs at a time (LPV_OED_WORKERS) or lower LPV_OED_JOB_MEMORY_LIMIT_BYTES, and submit it anew"
+    )
+    return _problem("job-crashed", "The job's process ended", 500, detail)
+
+
 def crashed(exit_code: int | None, limit_bytes: int) -> dict[str, Any]:
     """The child process ended in the middle of the job."""
     how = f"by signal {-exit_code}" if exit_code is not None and exit_code < 0 else f"with exit code {exit_code}"

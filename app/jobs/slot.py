@@ -7,9 +7,11 @@ from threading import Event, Thread
 from app.jobs import problems
 from app.jobs.child import Child
 from app.jobs.journal import Journal
-from app.jobs.outcomes import Crashed, Ended, Faulted, Outcome, OutOfMemory, Refused, Succeeded, TimedOut
+from app.jobs.outcomes import Crashed, Ended, Faulted, NoRoom, Outcome, OutOfMemory, Refused, Succeeded, TimedOut
 from app.jobs.records import ClaimedJob
 from app.settings import Settings
+from app.store.faults import fault_of
+from app.store.room import Room
 
 logger = logging.getLogger(__name__)
 SECONDS_BETWEEN_LOOKS = 2.0
@@ -19,8 +21,9 @@ SECONDS_AFTER_FAULT = 1.0
 class Slot:
     """Room for one running job."""
 
-    def __init__(self, journal: Journal, kinds: Mapping[str, str], settings: Settings) -> None:
+    def __init__(self, journal: Journal, kinds: Mapping[str, str], settings: Settings, room: Room) -> None:
         self._journal = journal
+        self._room = room
         self._kinds = kinds
         self._settings = settings
         self.child = Child(settings)
@@ -50,8 +53,8 @@ class Slot:
             self._awake.clear()
             try:
                 found = self._run_next()
-            except Exception:
-                logger.exception("the ledger could not be reached; trying again")
+            except Exception as error:
+                _log(error, "the ledger could not be reached; trying again")
                 self._stopping.wait(SECONDS_AFTER_FAULT)
                 continue
             if not found:
@@ -59,7 +62,7 @@ class Slot:
         self.child.close()
 
     def _run_next(self) -> bool:
-        job = self._journal.claim()
+        job = self._journal.claim() if self._room.is_enough() else None
         if job is None:
             return False
         self._record(job, self._run(job))
@@ -81,8 +84,9 @@ class Slot:
             try:
                 return self._write_down(job, outcome)
             except Exception as error:
-                logger.exception("the outcome of job %s could not be written down; trying again", job.id)
-                outcome = Faulted(repr(error))
+                _log(error, f"the outcome of job {job.id} could not be written down; trying again")
+                if fault_of(error) is None:  # it is about the outcome, not about the place where it is kept
+                    outcome = Faulted(repr(error))
             if self._stopping.wait(SECONDS_AFTER_FAULT):
                 return None  # still marked as running, so the next server starts it again
 
@@ -98,6 +102,12 @@ class Slot:
                 self._journal.fail(run, problems.out_of_memory(memory_limit))
             case TimedOut():
                 self._journal.fail(run, problems.timed_out(self._settings.job_time_limit_seconds))
+            case NoRoom():
+                self._room.was_too_little()
+                self._journal.requeue(run, "waiting for room on the disk")
+            case Crashed(int(exit_code)) if outcome.from_outside:
+                logger.warning("the process of job %s (%s) was ended by signal %s", job.id, job.kind, -exit_code)
+                self._journal.killed(run, -exit_code, self._settings.job_kills)
             case Crashed(exit_code):
                 logger.error("the process of job %s (%s) ended with code %s", job.id, job.kind, exit_code)
                 self._journal.fail(run, problems.crashed(exit_code, memory_limit))
@@ -106,3 +116,8 @@ class Slot:
                 self._journal.fail(run, problems.internal())
             case Ended():
                 self._journal.requeue(run)
+
+
+def _log(error: Exception, what: str) -> None:
+    """Say what went wrong; where in the program only when the cause is not the disk or the database."""
+    logger.error("%s: %s", what, error, exc_info=None if fault_of(error) else error)

@@ -12,7 +12,7 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from app.jobs.outcomes import Faulted, OutOfMemory, Refused, Succeeded, TaskOutcome
+from app.jobs.outcomes import Faulted, NoRoom, OutOfMemory, Refused, Succeeded, TaskOutcome
 
 if TYPE_CHECKING:
     from app.jobs.task import TaskContext
@@ -29,6 +29,7 @@ class ChildOptions:
     memory_limit_bytes: int
     arrays_dir: Path
     max_array_bytes: int
+    disk_reserve_bytes: int = 0
 
 
 @dataclass(frozen=True)
@@ -51,30 +52,54 @@ def initialize(options: ChildOptions, reports: "Connection[bytes, bytes]") -> No
     _child = _Child(options, reports)
 
 
-def run_task(module: str, payload: dict[str, Any], job_id: str, attempt: int) -> TaskOutcome:
-    """Run one job; whatever happens in it comes back as data."""
+def run_task(module: str, payload: dict[str, Any], job_id: str, attempt: int, newest: str) -> TaskOutcome:
+    """Run one job; whatever happens in it comes back as data. Identifiers made in it are larger than `newest`."""
     try:
-        return _run(module, payload, job_id, attempt)
-    except MemoryError:
-        return OutOfMemory()
+        return _run(module, payload, job_id, attempt, newest)
     except BaseException as error:
         return _outcome_of(error)
 
 
-def _run(module: str, payload: dict[str, Any], job_id: str, attempt: int) -> Succeeded:
-    from app.jobs.discovery import load_task
+def take_buffers() -> None:
+    """Let each copy of OpenBLAS take the memory that it works in.
 
+    It does so at its first use and keeps it; where no memory is left by then, it tries again for ever.
+    """
+    import numpy as np
+    from scipy.linalg.blas import dgemm
+
+    square = np.eye(128)
+    np.matmul(square, square)
+    dgemm(1.0, square, square)
+
+
+def _run(module: str, payload: dict[str, Any], job_id: str, attempt: int, newest: str) -> Succeeded:
+    from app.jobs.discovery import load_task
+    from app.store.identifiers import observe
+
+    take_buffers()
+    observe(newest)
     result = load_task(module).run(payload, _context(job_id, attempt))
     json.dumps([result.document, *(one.document for one in result.beside)], allow_nan=False)
     return Succeeded(result.document, result.arrays, result.beside)
 
 
 def _outcome_of(error: BaseException) -> TaskOutcome:
+    from app.store.faults import is_full
     from identification.errors import MisuseError
 
     if isinstance(error, MisuseError):
         return Refused(str(error), error.field)
+    if isinstance(error, MemoryError) or _is_unmapped(error):
+        return OutOfMemory()
+    if is_full(error):
+        return NoRoom()
     return Faulted("".join(traceback.format_exception(error)))
+
+
+def _is_unmapped(error: BaseException) -> bool:
+    """Whether a library could not be loaded because there was no memory for it."""
+    return isinstance(error, ImportError) and ("failed to map" in str(error) or "annot allocate memory" in str(error))
 
 
 def _context(job_id: str, attempt: int) -> "TaskContext":
@@ -87,7 +112,7 @@ def _context(job_id: str, attempt: int) -> "TaskContext":
     def report(fraction: float, message: str) -> None:
         reports.send_bytes(json.dumps([job_id, attempt, fraction, message], ensure_ascii=False).encode())
 
-    return TaskContext(ArrayStore(options.arrays_dir, options.max_array_bytes), report)
+    return TaskContext(ArrayStore(options.arrays_dir, options.max_array_bytes, options.disk_reserve_bytes), report)
 
 
 def _die_with_parent(parent: int) -> None:

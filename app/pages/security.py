@@ -7,6 +7,7 @@ CONTENT_SECURITY_POLICY = (
     "default-src 'self'; style-src 'self' 'unsafe-inline'; object-src 'none'; base-uri 'none'; form-action 'self'; "
     "frame-ancestors 'none'"
 )
+FIRST_STEPS = ("plants", "jobs", "static")
 HEADERS = {
     "Content-Security-Policy": CONTENT_SECURITY_POLICY,
     "X-Content-Type-Options": "nosniff",
@@ -17,7 +18,7 @@ HEADERS = {
 
 def is_page(path: str) -> bool:
     """Whether a path belongs to the workbench, whose shells, scripts and styles hold no data."""
-    return path == "/" or path.split("/")[1] in ("plants", "jobs", "static")
+    return path == "/" or (path.startswith("/") and path.split("/")[1] in FIRST_STEPS)
 
 
 class PageHeaders:

@@ -1,16 +1,25 @@
-"""Whether the service is there."""
+"""Whether the service is there, and whether it can work."""
 
 from fastapi import APIRouter
 
 from app import __version__
 from app.dependencies import ContainerDependency
-from app.schemas.jobs import Health
+from app.errors import UnavailableError
+from app.schemas.health import Health, Readiness
 
 router = APIRouter(tags=["service"])
 
 
 @router.get("/health")
-def get_health(container: ContainerDependency) -> Health:
-    """Answers once the service can take requests; needs no token."""
-    container.database.check()
+async def get_health() -> Health:
+    """Answers as long as the process is alive, whatever else is wrong; needs no token."""
     return Health(version=__version__)
+
+
+@router.get("/readiness", responses={503: {"description": "The service cannot take in work; the problem says why"}})
+def get_readiness(container: ContainerDependency) -> Readiness:
+    """Answers 200 while the service can take in work, else 503 with every reason; needs no token."""
+    reasons = container.readiness.reasons()
+    if reasons:
+        raise UnavailableError("; ".join(reasons), headers={"Retry-After": "10"})
+    return Readiness(version=__version__)

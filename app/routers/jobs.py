@@ -2,24 +2,32 @@
 
 from typing import Annotated, Any
 
+from anyio.to_thread import run_sync
 from fastapi import APIRouter, Header, Query
-from sse_starlette import EventSourceResponse
+from fastapi.responses import StreamingResponse
 
 from app.dependencies import ContainerDependency, Cursor, LedgerDependency, Limit
 from app.jobs.records import JobState
 from app.schemas.jobs import Job, JobPage
-from app.services.job_events import watch
 
 router = APIRouter(prefix="/jobs", tags=["jobs"])
 
 EventId = Annotated[str | None, Header(alias="Last-Event-ID", pattern=r"^[0-9]{1,18}$")]
 EventIdQuery = Annotated[str | None, Query(alias="lastEventId", pattern=r"^[0-9]{1,18}$")]
+NOT_KEPT = {"Cache-Control": "no-store", "X-Accel-Buffering": "no"}
 EVENT_STREAM: dict[int | str, dict[str, Any]] = {
     200: {
         "description": "Server-sent events; the data of each is a JobEvent, its id the sequence",
         "content": {"text/event-stream": {"schema": {"type": "string"}}},
-    }
+    },
+    503: {"description": "As many streams are open as there may be"},
 }
+
+
+class EventStream(StreamingResponse):
+    """Server-sent events."""
+
+    media_type = "text/event-stream"
 
 
 @router.get("")
@@ -43,14 +51,14 @@ def cancel_job(jobId: str, ledger: LedgerDependency) -> Job:
     return Job.of(ledger.cancel(jobId))
 
 
-@router.get("/{jobId}/events", response_class=EventSourceResponse, responses=EVENT_STREAM)
-def watch_job_events(
+@router.get("/{jobId}/events", response_class=EventStream, responses=EVENT_STREAM)
+async def watch_job_events(
     jobId: str,
     container: ContainerDependency,
     last_event_id: EventId = None,
     last_event_id_query: EventIdQuery = None,
-) -> EventSourceResponse:
+) -> StreamingResponse:
     """What happens to a job, from its submission or from after the event Last-Event-ID, until it has finished."""
-    container.ledger.get(jobId)
+    await run_sync(container.ledger.get, jobId)
     after = int(last_event_id or last_event_id_query or 0)
-    return EventSourceResponse(watch(container.ledger, container.hub, jobId, after))
+    return EventStream(container.job_events.watch(jobId, after), headers=NOT_KEPT)

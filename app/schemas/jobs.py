@@ -1,6 +1,6 @@
 """Documents of jobs."""
 
-from typing import Literal, Self
+from typing import Self
 
 from pydantic import Field
 
@@ -35,7 +35,9 @@ class Job(CamelModel):
     started_at: Timestamp | None = None
     finished_at: Timestamp | None = None
     plant_id: str | None = Field(default=None, description="the plant it belongs to; null where it makes one")
-    attempts: Integer = Field(description="how often it was started; more than once when a server died")
+    attempts: Integer = Field(
+        description="how often it was started; more than once when a server or its process was killed"
+    )
     result: JobResult | None = Field(default=None, description="what it made, once it has succeeded")
     problem: Problem | None = Field(default=None, description="why it failed, if it has")
 
@@ -83,10 +85,3 @@ class JobEvent(CamelModel):
         """The document of an event in the ledger."""
         given = {"sequence": record.seq, "jobId": record.job_id, "at": record.at, "name": record.name}
         return cls.model_validate(given | record.data)
-
-
-class Health(CamelModel):
-    """The service answers and so does its database."""
-
-    status: Literal["ok"] = "ok"
-    version: str

@@ -12,6 +12,9 @@ from uuid import uuid4
 import numpy as np
 from numpy.typing import NDArray
 
+from app.store.faults import StorageFullError
+from app.store.room import free_bytes
+
 Array = NDArray[Any]
 _EPOCH = (1980, 1, 1, 0, 0, 0)
 
@@ -31,8 +34,9 @@ class ArrayStore:
     writers of the same arrays write the same file. Commit the row that names the hash after `put` has returned.
     """
 
-    def __init__(self, root: Path, max_bytes: int) -> None:
+    def __init__(self, root: Path, max_bytes: int, reserve: int = 0) -> None:
         self._root = root
+        self._reserve = reserve
         self._temporary = root / "tmp"
         self._max_bytes = max_bytes
 
@@ -47,7 +51,8 @@ class ArrayStore:
         """Keep `arrays`; durable on return.
 
         Returns the SHA-256 in hexadecimal, the same for the same names, types, shapes and values.
-        Raises ArraysTooLargeError beyond the limit, ValueError for arrays of Python objects.
+        Raises ArraysTooLargeError beyond the limit, ValueError for arrays of Python objects, and StorageFullError,
+        leaving nothing behind, when less than the reserve would be left of the disk.
         """
         self._check_size(arrays)
         content = encode(arrays)
@@ -92,14 +97,20 @@ class ArrayStore:
         return True
 
     def _write(self, path: Path, content: bytes) -> None:
-        path.parent.mkdir(parents=True, exist_ok=True)
         self._temporary.mkdir(parents=True, exist_ok=True)
+        if free_bytes(self._temporary) < len(content) + self._reserve:
+            raise StorageFullError(f"no room for {len(content)} bytes beside the reserve of {self._reserve}")
         temporary = self._temporary / uuid4().hex
-        with temporary.open("xb") as file:
-            file.write(content)
-            file.flush()
-            os.fsync(file.fileno())
-        temporary.replace(path)
+        try:
+            with temporary.open("xb") as file:
+                file.write(content)
+                file.flush()
+                os.fsync(file.fileno())
+            path.parent.mkdir(parents=True, exist_ok=True)
+            temporary.replace(path)
+        except BaseException:
+            temporary.unlink(missing_ok=True)
+            raise
 
 
 def encode(arrays: Mapping[str, Array]) -> bytes:

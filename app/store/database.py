@@ -7,11 +7,12 @@ from functools import partial
 from threading import Lock
 from typing import Any
 
-from sqlalchemy import Engine, create_engine, make_url, text
+from sqlalchemy import Engine, create_engine, func, make_url, select, text
 from sqlalchemy.orm import Session
 
 from app.store import sqlite
 from app.store.migrate import upgrade
+from app.store.rows import JobRow, ResourceRow
 
 
 class Database:
@@ -39,10 +40,26 @@ class Database:
         with self._turn, Session(self._writing, expire_on_commit=False) as session, session.begin():
             yield session
 
+    def newest_identifier(self) -> str | None:
+        """The largest identifier that was ever given to a job or a resource."""
+        with self.read() as session:
+            found = [
+                session.scalar(select(func.max(column))) for column in (JobRow.id, JobRow.resource_id, ResourceRow.id)
+            ]
+        return max(filter(None, found), default=None)
+
     def check(self) -> None:
         """Raise when the database does not answer."""
         with self._engine.connect() as connection:
             connection.execute(text("SELECT 1"))
+
+    def damage(self) -> str | None:
+        """What an examination of the file finds wrong, if anything; other databases examine themselves."""
+        if self._engine.dialect.name != "sqlite":
+            return None
+        with self._engine.connect() as connection:
+            found = str(connection.execute(text("PRAGMA quick_check(1)")).scalar())
+        return None if found == "ok" else found.splitlines()[-1]
 
     def close(self) -> None:
         self._engine.dispose()

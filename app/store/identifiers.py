@@ -10,7 +10,7 @@ _RANDOM_BITS = 62
 
 
 class _Clock:
-    """Milliseconds and a counter that never run backwards within this process."""
+    """Milliseconds and a counter that never run backwards, nor behind what was observed [Lamport's clock]."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
@@ -22,6 +22,11 @@ class _Clock:
             self._last = max(time.time_ns() // 1_000_000 << 12, self._last + 1)
             return self._last
 
+    def observe(self, tick: int) -> None:
+        """Go on after a tick of elsewhere."""
+        with self._lock:
+            self._last = max(self._last, tick)
+
 
 _clock = _Clock()
 
@@ -31,6 +36,12 @@ def new_identifier() -> str:
     tick = _clock.tick()
     value = (tick >> 12) << 80 | 0x7 << 76 | (tick & 0xFFF) << 64 | 0b10 << 62 | secrets.randbits(_RANDOM_BITS)
     return f"{value:032x}"
+
+
+def observe(identifier: str) -> None:
+    """Make all later identifiers of this process larger than this one, though the clock may have been set back."""
+    value = int(identifier, 16)
+    _clock.observe((value >> 80) << 12 | (value >> 64) & 0xFFF)
 
 
 def is_identifier(text: str) -> bool:

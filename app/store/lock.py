@@ -8,6 +8,10 @@ from pathlib import Path
 SECONDS_TO_WAIT = 2.0
 
 
+class InUseError(RuntimeError):
+    """Another server uses the directory."""
+
+
 class DirectoryLock:
     """Held by the server that uses a directory; the system lets go of it when the process ends, however it ends."""
 
@@ -16,13 +20,13 @@ class DirectoryLock:
         self._file: TextIOWrapper | None = None
 
     def acquire(self) -> None:
-        """Take the lock; raises RuntimeError when another server keeps it."""
+        """Take the lock; raises InUseError when another server keeps it."""
         self._file = (self._directory / "server.lock").open("w")
         deadline = time.monotonic() + SECONDS_TO_WAIT
         while not self._try():
             if time.monotonic() > deadline:
                 self.release()
-                raise RuntimeError(f"another server uses {self._directory}; stop it or set another LPV_OED_DATA_DIR")
+                raise InUseError(f"another server uses {self._directory}; stop it or set another LPV_OED_DATA_DIR")
             time.sleep(0.05)
 
     def release(self) -> None:

@@ -46,12 +46,25 @@ class JobRow(Base):
     fraction: Mapped[float] = mapped_column(Float)
     message: Mapped[str] = mapped_column(Text)
     attempts: Mapped[int] = mapped_column(Integer)
+    kills: Mapped[int] = mapped_column(Integer, server_default="0", default=0)
+    server: Mapped[str | None] = mapped_column(String(32))
     created_at: Mapped[datetime]
     started_at: Mapped[datetime | None]
     finished_at: Mapped[datetime | None]
     problem: Mapped[dict[str, Any] | None] = mapped_column(JSON(none_as_null=True))
 
     __table_args__ = (Index("ix_jobs_state_id", "state", "id"),)
+
+
+class ServerRow(Base):
+    """A server that shares the database; what it runs is orphaned once it was not seen for the time of a lease."""
+
+    __tablename__ = "servers"
+
+    id: Mapped[str] = mapped_column(String(32), primary_key=True)
+    name: Mapped[str] = mapped_column(Text)
+    started_at: Mapped[datetime]
+    seen_at: Mapped[datetime]
 
 
 class JobEventRow(Base):

@@ -89,7 +89,7 @@ def test_the_document_is_the_same_whatever_the_settings(
     tmp_path: Path, document: dict[str, Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("LPV_OED_HOST", "0.0.0.0")
-    monkeypatch.setenv("LPV_OED_TOKEN", "t")
+    monkeypatch.setenv("LPV_OED_TOKEN", "t" * 16)
     assert create_app(Settings()).openapi() == document
     assert openapi_export.main(["--output", str(tmp_path / "a.json")]) == 0
     first = (tmp_path / "a.json").read_text()

@@ -28,7 +28,10 @@ def test_the_server_loads_nothing_heavy_and_writes_nothing(tmp_path: Path, repos
     ("settings", "expected"),
     [
         ({"HOST": "0.0.0.0"}, "set LPV_OED_TOKEN, or LPV_OED_HOST=127.0.0.1"),
-        ({"PORT": "99999", "TOKEN": "a-token"}, "LPV_OED_PORT: Input should be less than or equal to 65535"),
+        (
+            {"PORT": "99999", "TOKEN": "a-token-of-the-team"},
+            "LPV_OED_PORT: Input should be less than or equal to 65535",
+        ),
         ({"TASK_PACKAGES": "one"}, "task_packages"),
     ],
 )
@@ -47,4 +50,4 @@ def test_settings_that_are_refused_are_explained_without_a_traceback(
     assert done.returncode == 1
     assert done.stderr.strip().count("\n") == 0
     assert expected in done.stderr
-    assert "a-token" not in done.stderr
+    assert "a-token-of-the-team" not in done.stderr

@@ -18,7 +18,6 @@ SERVICE_ONLY = {
         "socket",
         "sqlalchemy",
         "sqlite3",
-        "sse_starlette",
         "starlette",
         "subprocess",
         "time",

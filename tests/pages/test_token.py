@@ -12,7 +12,9 @@ from tests.support.server import Server, running_server
 @pytest.fixture(scope="module")
 def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
     """A server that asks for a token."""
-    with running_server(tmp_path_factory.mktemp("guarded") / "data", {"LPV_OED_TOKEN": "s3cret"}) as running:
+    with running_server(
+        tmp_path_factory.mktemp("guarded") / "data", {"LPV_OED_TOKEN": "s3cret-of-the-team"}
+    ) as running:
         yield running
 
 
@@ -27,7 +29,7 @@ def test_the_token_is_asked_for_and_sent(visit: Visit) -> None:
     page.goto("/plants")
     page.get_by_role("dialog").wait_for()
     assert visit.violations() == []
-    for token in ("wrong", "s3cret"):
+    for token in ("wrong", "s3cret-of-the-team"):
         page.get_by_role("textbox", name="Token").fill(token)
         page.get_by_role("button", name="Go on").click()
         if token == "wrong":

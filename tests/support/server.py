@@ -83,8 +83,7 @@ def start_server(data_directory: Path, environment: dict[str, str] | None = None
         "PYTHONPATH": str(ROOT),
         **(environment or {}),
     }
-    command = [sys.executable, "-m", "uvicorn", "--factory", "app.main:create_app"]
-    command += ["--host", "127.0.0.1", "--port", str(port), "--no-access-log"]
+    command = [sys.executable, "-m", "app.serve"]
     with log.open("wb") as output:
         process = subprocess.Popen(
             command,

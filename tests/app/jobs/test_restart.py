@@ -1,5 +1,8 @@
 """Jobs across stops and starts of the server, and children that cannot even start."""
 
+import os
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -8,7 +11,7 @@ from fastapi.testclient import TestClient
 
 from app.container import Container
 from app.main import create_app
-from app.settings import MEBIBYTE, Settings
+from app.settings import LEAST_JOB_MEMORY, Settings
 from tests.app.conftest import TASK_PACKAGES
 from tests.app.jobs.bench import Bench
 from tests.app.jobs.test_outcomes import is_there
@@ -70,8 +73,31 @@ def test_a_child_that_cannot_start_fails_the_job(tmp_path: Path, monkeypatch: py
         assert bench.run()["state"] == "succeeded"
 
 
-@pytest.mark.parametrize("limit", [256 * MEBIBYTE])
-def test_the_least_memory_limit_is_enough_to_start(tmp_path: Path, limit: int) -> None:
-    with started(tmp_path / "data", job_memory_limit_bytes=limit) as client:
-        document = bench_of(client).run()
+LOADED = """
+import sys
+from pathlib import Path
+from app.jobs import worker
+from app.jobs.discovery import discover_kinds, load_task
+worker.initialize(worker.ChildOptions(int(sys.argv[1]), int(sys.argv[2]), Path(sys.argv[3]), 0), None)
+worker.take_buffers()
+for module in discover_kinds(("app.jobs.tasks",)).values():
+    load_task(module)
+print("loaded")
+"""
+
+
+def test_the_least_memory_limit_is_enough_for_every_kind_of_job(tmp_path: Path, repository: Path) -> None:
+    command = [sys.executable, "-c", LOADED, str(os.getpid()), str(LEAST_JOB_MEMORY), str(tmp_path)]
+    environment = {**os.environ, "PYTHONPATH": str(repository)}
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+    assert (done.stdout, done.returncode) == ("loaded\n", 0), done.stderr
+
+
+@pytest.mark.parametrize("end", ["solve", "hoard"])
+def test_at_the_least_memory_limit_jobs_end(tmp_path: Path, end: str) -> None:
+    with started(tmp_path / "data", job_memory_limit_bytes=LEAST_JOB_MEMORY) as client:
+        document = bench_of(client).run(end=end)
+    if end == "hoard":
+        assert document["problem"]["type"] == "urn:lpv-oed:problem:memory-limit"
+    else:
         assert document["state"] == "succeeded", document["problem"]

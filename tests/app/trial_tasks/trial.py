@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from scipy.linalg import eigh
 
 from app.jobs.task import TaskContext, TaskResult
 from identification.errors import MisuseError
@@ -53,6 +54,20 @@ def _hoard(payload: dict[str, Any], context: TaskContext) -> TaskResult:
     return TaskResult({"size": len(hoard)})
 
 
+def _solve(payload: dict[str, Any], context: TaskContext) -> TaskResult:
+    """Linear algebra with hardly any memory left: whatever copy of BLAS it calls, it must come to an end."""
+    matrix = np.eye(100)
+    hoard: list[Any] = []
+    for size in (2**24, 2**20, 2**17):
+        try:
+            while True:
+                hoard.append(np.ones(size // 8))
+        except MemoryError:
+            continue
+    hoard.clear() if len(hoard) < 2 else hoard.pop()
+    return TaskResult({"trace": float(np.trace(matrix @ matrix) + eigh(matrix, eigvals_only=True).sum())})
+
+
 def _kill(payload: dict[str, Any], context: TaskContext) -> TaskResult:
     os.kill(os.getpid(), signal.SIGKILL)
     raise AssertionError
@@ -67,6 +82,7 @@ def _no_number(payload: dict[str, Any], context: TaskContext) -> TaskResult:
 
 
 _END = {
+    "solve": _solve,
     "return": _succeed,
     "misuse": _misuse,
     "fault": _fault,
