@@ -5,9 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from identification.affine_state_space import AffineStateSpace, frozen_matrices, propagate
+from identification.affine_state_space import AffineStateSpace, frozen_matrices
 from identification.arrays import ComplexArray, FloatArray
 from identification.errors import NotIdentifiableError
+from identification.models.recursion import propagate
 from identification.outcome import Outcome, TestResult
 from identification.varying.affine_parameters import AffineSizes
 

@@ -5,7 +5,6 @@ import numpy as np
 from identification.arrays import FloatArray
 from identification.errors import MisuseError
 from identification.filtering import lfilter
-from identification.models.hold import held_gradient, held_response
 from identification.models.rational import RationalStructure
 from identification.signals import FrequencyResponse, Measurement, TimeRecord, require_one_channel
 
@@ -70,8 +69,8 @@ def response_errors(
     require_same_sampling(structure, data)
     if weights is None:
         weights = np.ones(len(data)) if data.variance is None else 1 / np.sqrt(data.variance)
-    error = np.sqrt(2) * weights * (data.response - held_response(structure, zeta, data.frequencies, data.held))
-    gradient = -np.sqrt(2) * weights * held_gradient(structure, zeta, data.frequencies, data.held)
+    error = np.sqrt(2) * weights * (data.response - structure.plant_response(zeta, data.frequencies, data.held))
+    gradient = -np.sqrt(2) * weights * structure.plant_gradient(zeta, data.frequencies, data.held)
     jacobian = np.zeros((2 * len(data), structure.size))
     jacobian[:, : structure.n_plant] = np.concatenate([gradient.real, gradient.imag], axis=-1).T
     return np.concatenate([error.real, error.imag]), jacobian

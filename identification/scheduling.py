@@ -128,10 +128,22 @@ class ParameterDependence:
         """Number of basis functions of each group."""
         return tuple(basis.size for basis in self.bases)
 
+    @property
+    def places(self) -> tuple[slice, ...]:
+        """Where the coefficients of each group stand in ζ."""
+        ends = np.cumsum(self.counts).tolist()
+        return tuple(slice(end - count, end) for end, count in zip(ends, self.counts, strict=True))
+
+    def split(self, theta: FloatArray) -> list[FloatArray]:
+        """θ (k,) by group, each (functions, coefficients)."""
+        counts = np.array(self.counts)
+        parts = np.split(theta, np.cumsum(np.array(self.sizes) * counts)[:-1])
+        return [part.reshape(-1, count) for part, count in zip(parts, counts, strict=True)]
+
     def parameters_of(self, coefficients: int) -> int:
         """How many entries of θ the first coefficients, whole groups of them, have."""
-        ends = np.cumsum(self.counts)
-        return sum(size * e for size, e, end in zip(self.sizes, self.counts, ends, strict=True) if end <= coefficients)
+        sizes = zip(self.bases, self.counts, self.places, strict=True)
+        return sum(basis.size * count for basis, count, place in sizes if place.stop <= coefficients)
 
     @property
     def needed_operating_points(self) -> int:
@@ -140,9 +152,7 @@ class ParameterDependence:
 
     def parameter_names(self, coefficient_names: Sequence[str]) -> tuple[str, ...]:
         """A name for each entry of θ, such as a1[0], a1[1], b0[0]."""
-        ends = np.cumsum(self.counts)
-        groups = [coefficient_names[end - count : end] for end, count in zip(ends, self.counts, strict=True)]
-        pairs = zip(groups, self.bases, strict=True)
+        pairs = zip((coefficient_names[place] for place in self.places), self.bases, strict=True)
         return tuple(f"{name}[{label}]" for names, basis in pairs for label in basis.labels for name in names)
 
     def points(self, points: ArrayLike) -> FloatArray:
@@ -166,12 +176,12 @@ class ParameterDependence:
 
     def coefficients(self, theta: FloatArray, points: ArrayLike) -> FloatArray:
         """ζ(p) = T(p) θ at the operating points (M, s) for θ (k,), as (M, n)."""
-        p, start, first = self.points(points), 0, 0
+        p, start = self.points(points), 0
         zeta = np.empty((len(p), self.coefficient_count))
-        for functions, count in self._groups(p):
-            stop = start + functions.shape[1] * count
-            zeta[:, first : first + count] = functions @ theta[start:stop].reshape(-1, count)
-            start, first = stop, first + count
+        for functions, place in self._groups(p):
+            stop = start + functions.shape[1] * (place.stop - place.start)
+            zeta[:, place] = functions @ theta[start:stop].reshape(functions.shape[1], -1)
+            start = stop
         return zeta
 
     def pulled(self, by_zeta: Numbers, points: ArrayLike) -> Numbers:
@@ -179,21 +189,21 @@ class ParameterDependence:
 
         T(p), nearly all zeros, is not formed. Each parameter's derivatives lie together in memory.
         """
-        p, start, first, given = self.points(points), 0, 0, by_zeta.shape[-1]
+        p, start, given = self.points(points), 0, by_zeta.shape[-1]
         by_theta = np.empty((self.parameters_of(given), *by_zeta.shape[:-1]), dtype=by_zeta.dtype)
-        for functions, count in self._groups(p):
-            part = by_zeta[..., first : first + count]
-            for values in functions.T if first < given else ():
+        for functions, place in self._groups(p):
+            part = by_zeta[..., place]
+            for values in functions.T if place.stop <= given else ():
                 spread = values.reshape(-1, *(1,) * (by_zeta.ndim - 1))
-                np.multiply(part, spread, out=np.moveaxis(by_theta[start : start + count], 0, -1))
-                start += count
-            first += count
+                stop = start + part.shape[-1]
+                np.multiply(part, spread, out=np.moveaxis(by_theta[start:stop], 0, -1))
+                start = stop
         return np.moveaxis(by_theta, 0, -1)
 
-    def _groups(self, p: FloatArray) -> Iterator[tuple[FloatArray, int]]:
-        """The functions (M, J) of each group at checked points, and how many coefficients it has."""
+    def _groups(self, p: FloatArray) -> Iterator[tuple[FloatArray, slice]]:
+        """The functions (M, J) of each group at checked points, and where its coefficients stand in ζ."""
         values = {basis: basis.evaluate(p, self.variables) for basis in dict.fromkeys(self.bases)}
-        return zip((values[basis] for basis in self.bases), self.counts, strict=True)
+        return zip((values[basis] for basis in self.bases), self.places, strict=True)
 
     def matrix(self, points: ArrayLike) -> FloatArray:
         """T(p) at the operating points (M, s), as (M, n, k): for fits over a few points, not along p(t)."""

@@ -267,7 +267,7 @@ def _shortfall_advice(shortfall: Shortfall) -> Outcome:
 
 
 def _unreachable(problem: DesignProblem, outcome: Outcome) -> Design:
-    noise = problem.model.dependence.size - problem.model.plant_size
+    noise = problem.model.noise_size
     k = len(problem.model.parameters) + noise
     nothing = np.full((k, k), np.inf)
     return Design(outcome, (), np.inf, np.inf, np.inf, np.inf, problem.samples, np.inf, nothing, ())

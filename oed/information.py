@@ -21,7 +21,7 @@ def sensitivity(model: Model, points: ArrayLike, omega: FloatArray) -> ComplexAr
     zeta = model.coefficients(points)
     noise = np.sqrt(model.noise_variance) * model.structure.noise_response(zeta, omega)
     weighted = model.structure.plant_gradient(zeta, omega) / noise[:, None, :]
-    return model.dependence.pulled(np.swapaxes(weighted, 1, 2), points)
+    return model.pulled(np.swapaxes(weighted, 1, 2), points)
 
 
 def noise_information(model: Model, points: ArrayLike) -> FloatArray:

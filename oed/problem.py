@@ -88,7 +88,7 @@ class DesignProblem:
     @property
     def size(self) -> int:
         """Number of parameters of the model: θ_G, those of its effects, θ_H."""
-        return len(self.model.parameters) - self.model.plant_size + self.model.dependence.size
+        return len(self.model.parameters) + self.model.noise_size
 
     @property
     def prior(self) -> FloatArray:

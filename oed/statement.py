@@ -58,7 +58,7 @@ def stated(problem: DesignProblem) -> Statement:
     itself = Hypothesis(model)
     others = [demand.hypothesis for _, demand in demands]
     subject = Subject((itself, *others))
-    noise = model.dependence.size - model.plant_size
+    noise = model.noise_size
     size = subject.size + noise
     base = _base_places(model, subject.size)
     matrices: list[FloatArray] = []
@@ -96,7 +96,7 @@ def _reference(problem: DesignProblem) -> tuple[Sequence[Batch], bool]:
 
 def _base_places(model: Model, plant: int) -> IntArray:
     """Where θ_G and θ_H stand."""
-    k, noise = model.plant_size, model.dependence.size - model.plant_size
+    k, noise = model.plant_size, model.noise_size
     return np.concatenate([np.arange(k), plant + np.arange(noise)])
 
 

@@ -97,7 +97,7 @@ def prior_information(model: Model, known: bool) -> FloatArray:
         return _inverse(model.covariance)
     if model.joint_covariance is None:
         raise MisuseError("the model has no covariance that could be prior information", "use_prior_information")
-    noise = model.dependence.size - model.plant_size
+    noise = model.noise_size
     return np.asarray(block_diag(_inverse(model.joint_covariance), np.zeros((noise, noise))))
 
 

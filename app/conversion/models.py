@@ -17,7 +17,6 @@ from app.schemas.state_space import StateSpaceModelRequest
 from identification.arrays import FloatArray
 from identification.errors import RangeError
 from identification.estimates import LocalEstimate
-from identification.models.hold import held_response
 from identification.models.model import Model
 from identification.models.rational import RationalStructure
 from identification.outcome import Outcome, TestResult
@@ -103,7 +102,7 @@ def _relative_error(estimate: LocalEstimate, data: Measurement | None) -> float 
     """√(mean |Ĝ − G|²/|Ĝ|²) over the frequencies at which Ĝ is not zero."""
     if not isinstance(data, FrequencyResponse):
         return None
-    response = held_response(estimate.model.structure, estimate.model.zeta, data.frequencies, data.held)
+    response = estimate.model.structure.plant_response(estimate.model.zeta, data.frequencies, data.held)
     seen = data.response != 0
     return finite_or_none(float(np.sqrt(np.mean(abs(1 - response[seen] / data.response[seen]) ** 2))))
 
@@ -119,7 +118,7 @@ def range_documents(model: Model, coefficients_at: Callable[[FloatArray], FloatA
     points = np.array(list(product(*axes)))
     coefficients = finite((coefficients_at or model.coefficients)(points), "coefficients")
     poles = []
-    if len(variables) == 1 and model.structure.n_a > 0:
+    if len(variables) == 1 and model.structure.order > 0:
         pairs = zip(points, finite(model.structure.poles(coefficients), "poles"), strict=True)
         poles = [PolesAtPoint(operating_point=p.tolist(), poles=ComplexVector.of(values)) for p, values in pairs]
     return {"stable": bool(np.all(model.structure.stable(coefficients))), "poles": poles}

@@ -13,7 +13,7 @@ from app.schemas.experiments import SchedulingRange
 from app.schemas.models import Model
 from app.schemas.plants import ContinuousTimeStructure, Plant
 from app.schemas.simulations import LeftOutEffect, SimulatedOutput
-from identification.along import Simulation, simulate_affine, simulate_rational, simulate_state_space
+from identification.along import Simulation, simulate_affine, simulate_along, simulate_state_space
 from identification.arrays import FloatArray
 from identification.errors import MisuseError
 from identification.extension.steady_period import LeftOut
@@ -40,7 +40,7 @@ def simulated(model: Model, plant: Plant, u: FloatArray, p: FloatArray) -> tuple
         if frozen is None:
             raise MisuseError("this model is one of single operating points only; it cannot follow p(t)", "model")
         return simulate_state_space(frozen, u, p), [FROZEN, *(unknown or [NO_BAND_ALONG])]
-    found = simulate_rational(kept_model(model, plant), u[:, 0], p, model.covariance is not None)
+    found = simulate_along(kept_model(model, plant), u, p, model.covariance is not None)
     return found, [FROZEN, *unknown]
 
 

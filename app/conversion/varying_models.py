@@ -59,18 +59,11 @@ def frozen_form(model: AffineStateSpace) -> ParameterVaryingStateSpace:
     return ParameterVaryingStateSpace(model.variables, basis, a, b, c, d, model.sample_time)
 
 
-def _entries(model: AffineStateSpace) -> IntArray:
-    """Where in θ of `AffineSizes` each entry of the document's θ stands."""
-    sizes, order = AffineSizes.of(model), _places(model.n_scheduling)
-    numbers = sizes.split(np.arange(sizes.size, dtype=np.float64))
-    return np.concatenate([part[order].ravel() for part in numbers]).astype(np.int64)
-
-
 def model_parts(estimate: AffineEstimate) -> dict[str, Any]:
     """θ, its accuracy, outcome, tests and poles, as in every model document."""
     model, frozen = estimate.model, frozen_form(estimate.model)
-    places = _entries(model)
     sizes = AffineSizes.of(model)
+    places = sizes.in_products
     theta = finite(sizes.join((model.a, model.b, model.c, model.d)), "matrices")[places]
     covariance = estimate.covariance
     if covariance is not None:
@@ -118,7 +111,7 @@ def kept_estimate(model: Model, plant: Plant) -> AffineEstimate:
     affine = AffineStateSpace(a, b, c, d, frozen.sample_time, scheduling_variables(plant))
     covariance: FloatArray | None = None
     if model.covariance is not None:
-        places = np.argsort(_entries(affine))
+        places = np.argsort(AffineSizes.of(affine).in_products)
         covariance = np.array(model.covariance)[np.ix_(places, places)]
     return AffineEstimate(affine, Outcome(model.outcome.status, model.outcome.advice), (), covariance)
 
@@ -141,7 +134,7 @@ def joint_document(model: AffineStateSpace, joint: FloatArray | None) -> Any:
 
 
 def _joint_places(model: AffineStateSpace, size: int) -> IntArray:
-    places = _entries(model)
+    places = AffineSizes.of(model).in_products
     return np.concatenate([places, np.arange(len(places), size)])
 
 

@@ -7,7 +7,6 @@ from numpy.typing import ArrayLike
 
 from identification.arrays import ComplexArray, FloatArray
 from identification.models.model import LocalModel, Model
-from identification.models.rational import RationalStructure
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,30 +26,21 @@ class UncertainPoles:
 
 def poles_of(model: Model, points: ArrayLike) -> UncertainPoles:
     """Along operating points (M, s)."""
-    values, sensitivity = _sensitivity(model.structure, model.coefficients(points))
-    by_theta = model.dependence.pulled(sensitivity, points)
-    return _uncertain(values, by_theta, model.covariance[: by_theta.shape[-1], : by_theta.shape[-1]])
+    values, gradient = model.structure.pole_gradient(model.coefficients(points))
+    return _uncertain(values, model.pulled(gradient, points), model.plant_covariance)
 
 
 def local_poles(model: LocalModel) -> UncertainPoles:
     """Of one local model, M = 1."""
-    values, sensitivity = _sensitivity(model.structure, model.zeta[None])
-    order = model.structure.n_a
-    return _uncertain(values, sensitivity, model.covariance[:order, :order])
-
-
-def _sensitivity(structure: RationalStructure, zeta: FloatArray) -> tuple[ComplexArray, ComplexArray]:
-    """Zeros x (M, n_a) of A and ∂x/∂a_i = −x^{n_a − i} / A′(x) as (M, n_a, n_a), both in the unit of poles."""
-    scale = 1.0 if structure.is_discrete else structure.frequency_scale
-    zeros = np.sort_complex(structure.poles(zeta)) / scale
-    order = structure.n_a
-    differences = zeros[..., :, None] - zeros[..., None, :] + np.eye(order)
-    powers = zeros[..., None] ** np.arange(order - 1, -1, -1)
-    return np.asarray(scale * zeros), np.asarray(-scale * powers / differences.prod(axis=-1)[..., None])
+    values, gradient = model.structure.pole_gradient(model.zeta[None])
+    size = model.structure.n_plant
+    return _uncertain(values, gradient, model.covariance[:size, :size])
 
 
 def _uncertain(values: ComplexArray, sensitivity: ComplexArray, covariance: FloatArray) -> UncertainPoles:
+    order = np.argsort(values, axis=-1)
     deviations = (
-        np.sqrt(np.einsum("mxi,ij,mxj->mx", part, covariance, part)) for part in (sensitivity.real, sensitivity.imag)
+        np.take_along_axis(np.sqrt(np.einsum("mxi,ij,mxj->mx", part, covariance, part)), order, axis=-1)
+        for part in (sensitivity.real, sensitivity.imag)
     )
-    return UncertainPoles(values, *deviations)
+    return UncertainPoles(np.take_along_axis(values, order, axis=-1), *deviations)

@@ -63,7 +63,7 @@ def plant_tangents(model: Model, rows: Rows, flows: Sequence[Flow]) -> FloatArra
     spectra = []
     for flow in flows:
         by_zeta = np.swapaxes(flow.by_coefficients, 1, 2)
-        spectra.append(np.moveaxis(model.dependence.pulled(by_zeta, flow.batch.points), -1, 0))
+        spectra.append(np.moveaxis(model.pulled(by_zeta, flow.batch.points), -1, 0))
     return rows.whiten(spectra)
 
 

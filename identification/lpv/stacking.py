@@ -8,13 +8,13 @@ from scipy.linalg import cho_factor, solve_triangular
 from identification.arrays import FloatArray
 from identification.errors import MisuseError, NotIdentifiableError, ShapeError
 from identification.models.model import Model
-from identification.models.rational import RationalStructure
+from identification.models.structure import Structure
 from identification.scheduling import ParameterDependence
 from identification.signals import Measurement, OperatingPoint
 
 
 def stacked_points(
-    structure: RationalStructure,
+    structure: Structure,
     dependence: ParameterDependence,
     experiments: Sequence[Measurement],
     prior: Model | None,
@@ -68,7 +68,7 @@ def place(point: OperatingPoint) -> str:
     return "p = " + ", ".join(f"{value:g}" for value in point)
 
 
-def asymptotics_advice(structure: RationalStructure, experiments: Sequence[Measurement]) -> str:
+def asymptotics_advice(structure: Structure, experiments: Sequence[Measurement]) -> str:
     """A warning when a measurement is short for statements that hold for many samples [Ghosh2018, Remark 1]."""
     short = [e for e in experiments if len(e) < 20 * structure.size]
     if not short:
@@ -79,7 +79,7 @@ def asymptotics_advice(structure: RationalStructure, experiments: Sequence[Measu
     )
 
 
-def instability_advice(structure: RationalStructure, coefficients: FloatArray, points: FloatArray) -> str:
+def instability_advice(structure: Structure, coefficients: FloatArray, points: FloatArray) -> str:
     """Where the model ζ (M, n) is unstable among the operating points (M, s); empty when nowhere."""
     unstable = ~structure.stable(coefficients)
     if not np.any(unstable):

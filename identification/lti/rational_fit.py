@@ -10,7 +10,6 @@ from identification.errors import MisuseError, NotIdentifiableError, RangeError
 from identification.estimates import LocalEstimate
 from identification.least_squares import LeastSquaresSolution, levenberg_marquardt
 from identification.likelihood import require_same_sampling, response_errors
-from identification.models.hold import held_response
 from identification.models.model import LocalModel
 from identification.models.rational import RationalStructure
 from identification.outcome import Outcome
@@ -180,7 +179,7 @@ def relative_error(model: LocalModel, data: FrequencyResponse, weighting: Weight
     """
     require_same_sampling(model.structure, data)
     weights = RationalFit(weighting=weighting)._weights(data)
-    error = data.response - held_response(model.structure, model.zeta, data.frequencies, data.held)
+    error = data.response - model.structure.plant_response(model.zeta, data.frequencies, data.held)
     return float(np.linalg.norm(weights * error) / np.linalg.norm(weights * data.response))
 
 

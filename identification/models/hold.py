@@ -1,45 +1,11 @@
-"""Models in continuous time as they are seen through an input that is held between its samples."""
+"""Ratios of polynomials in s as they are seen through an input that is held between its samples."""
 
 import numpy as np
 from scipy.linalg import expm
 
 from identification.arrays import ComplexArray, FloatArray
-from identification.errors import MisuseError
-from identification.models.rational import RationalStructure
 from identification.resolvent import resolvent_by_entry
 from identification.signals import FrequencyResponse, HeldInput
-
-
-def held_response(
-    structure: RationalStructure, zeta: FloatArray, omega: FloatArray, held: HeldInput | None
-) -> ComplexArray:
-    """What the samples of the output answer to samples of the input, for ζ (…, n) and ω (F,) in rad/s, as (…, F).
-
-        H(e^{jωT}) = Σ_m G(j(ω + 2πm/T)) P(j(ω + 2πm/T))/T,   P(s) = (1 − e^{−sT})/s, or e^{sT}((1 − e^{−sT})/s)²/T
-
-    for a zero-order hold and for straight lines between the samples, exact at every ω: x(t + T) = e^{AT} x(t) + Γ u
-    with a realisation of G [AstromWittenmark1997, (2.4)]. `held` None, and models in discrete time: G(ω) itself.
-    Raises MisuseError for n_b > n_a, which would answer the steps of a held input with impulses.
-    """
-    if held is None or structure.is_discrete:
-        return structure.plant_response(zeta, omega)
-    _require_proper(structure)
-    rows = [_response(structure, one, omega, held) for one in zeta.reshape(-1, zeta.shape[-1])]
-    return np.array(rows).reshape(*zeta.shape[:-1], len(omega))
-
-
-def held_gradient(
-    structure: RationalStructure, zeta: FloatArray, omega: FloatArray, held: HeldInput | None
-) -> ComplexArray:
-    """∂H/∂ζ_G of `held_response` for ζ (…, n) and ω (F,), exact, as (…, n_plant, F).
-
-    Every derivative of B/A is a polynomial over A², so that all of them follow from one realisation of 1/A².
-    """
-    if held is None or structure.is_discrete:
-        return structure.plant_gradient(zeta, omega)
-    _require_proper(structure)
-    rows = [_gradient(structure, one, omega, held) for one in zeta.reshape(-1, zeta.shape[-1])]
-    return np.array(rows).reshape(*zeta.shape[:-1], structure.n_plant, len(omega))
 
 
 def hold_factor(omega: FloatArray, held: HeldInput) -> ComplexArray:
@@ -54,41 +20,38 @@ def without_hold(data: FrequencyResponse) -> ComplexArray:
     return data.response if data.held is None else data.response / hold_factor(data.frequencies, data.held)
 
 
-def _require_proper(structure: RationalStructure) -> None:
-    if structure.n_b > structure.n_a:
-        raise MisuseError(
-            "the input was held between its samples, and a model with n_b > n_a would answer its steps with impulses;"
-            " choose n_b ≤ n_a, or state that the input is band limited",
-            "n_b",
-        )
+def held_ratio(
+    a: FloatArray, b: FloatArray, tau: float, scale: float, omega: FloatArray, held: HeldInput
+) -> ComplexArray:
+    """What the samples of the output answer to samples of the input of e^{−sτ} B/A at ω (F,) in rad/s, as (F,).
 
+        H(e^{jωT}) = Σ_m G(j(ω + 2πm/T)) P(j(ω + 2πm/T))/T,   P(s) = (1 − e^{−sT})/s, or e^{sT}((1 − e^{−sT})/s)²/T
 
-def _response(structure: RationalStructure, zeta: FloatArray, omega: FloatArray, held: HeldInput) -> ComplexArray:
-    a, b, tau = _polynomials(structure, zeta)
-    powers, _ = _powers_over(a, structure.frequency_scale, omega, held, tau)
+    for a zero-order hold and for straight lines between the samples, exact at every ω: x(t + T) = e^{AT} x(t) + Γ u
+    with a realisation of G [AstromWittenmark1997, (2.4)]. `a` (n_a + 1,) with its leading one and `b` (n_b + 1,) in
+    powers of s/`scale`, the highest first, n_b ≤ n_a.
+    """
+    powers, _ = _powers_over(a, scale, omega, held, tau)
     return np.asarray(_padded(b, len(a)) @ powers)
 
 
-def _gradient(structure: RationalStructure, zeta: FloatArray, omega: FloatArray, held: HeldInput) -> ComplexArray:
-    a, b, tau = _polynomials(structure, zeta)
-    scale, n_a, n_b = structure.frequency_scale, structure.n_a, structure.n_b
+def held_ratio_gradient(
+    a: FloatArray, b: FloatArray, tau: float, scale: float, omega: FloatArray, held: HeldInput
+) -> ComplexArray:
+    """Derivatives of `held_ratio` by a_1 …, b_0 … and τ, exact, as (n_a + n_b + 2, F).
+
+    Every derivative of B/A is a polynomial over A², so that all of them follow from one realisation of 1/A².
+    """
+    n_a, n_b = len(a) - 1, len(b) - 1
     powers, slope = _powers_over(np.convolve(a, a), scale, omega, held, tau)
     size = 2 * n_a + 1
     by_a = [_padded(-_shifted(b, n_a - i), size) for i in range(1, n_a + 1)]
     by_b = [_padded(_shifted(a, n_b - i), size) for i in range(n_b + 1)]
     rows = np.array([*by_a, *by_b]) @ powers
-    if not structure.delay:
-        return rows
     direct = b[0] if n_b == n_a else 0.0
     rest = _padded(b, n_a + 1) - direct * a
     by_delay = _padded(-scale * np.convolve(_shifted(rest[1:], 1), a), size) @ powers if n_a else 0.0
     return np.concatenate([rows, np.atleast_2d(by_delay - direct * slope)])
-
-
-def _polynomials(structure: RationalStructure, zeta: FloatArray) -> tuple[FloatArray, FloatArray, float]:
-    """A with its leading one, B and τ."""
-    a, b, tau, _, _ = structure.split(zeta)
-    return np.concatenate([[1.0], a]), b, float(tau[0]) if structure.delay else 0.0
 
 
 def _shifted(polynomial: FloatArray, power: int) -> FloatArray:

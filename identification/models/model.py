@@ -11,6 +11,7 @@ from identification.arrays import ComplexArray, FloatArray
 from identification.comparison.batch import Batch
 from identification.errors import MisuseError, ShapeError
 from identification.models.rational import RationalStructure
+from identification.models.structure import Structure
 from identification.places.place import Flow, Setting
 from identification.places.placed import PlacedEffect
 from identification.places.simulate import Solver, simulate
@@ -37,16 +38,18 @@ class Model:
 
     θ (k,) with its `covariance` P_θ (k, k); `noise_variance` σ_e² of e. `joint_covariance` of `parameters`, θ_G and
     those of the effects, as they were estimated together; None before that. Its coefficients, response and poles are
-    those of the plant itself; `respond` and `output` hold the effects as well.
+    those of the plant itself; `respond` and `output` hold the effects as well. `chart` Q (k, r): where the structure
+    has directions that no response shows, θ_G moves along the columns of Q only, and δ = Qᵀ θ stands in its place.
     """
 
-    structure: RationalStructure
+    structure: Structure
     dependence: ParameterDependence
     theta: FloatArray
     covariance: FloatArray
     noise_variance: float
     effects: tuple[PlacedEffect, ...] = ()
     joint_covariance: FloatArray | None = None
+    chart: FloatArray | None = None
 
     def __post_init__(self) -> None:
         n, k = self.structure.size, self.dependence.size
@@ -59,13 +62,43 @@ class Model:
 
     @cached_property
     def plant_size(self) -> int:
-        """k_G, the number of entries of θ that belong to G; they come first."""
+        """k_G, the number of entries of θ that belong to G, or of δ; they come first."""
+        if self.chart is not None:
+            return int(self.chart.shape[1])
         return self.dependence.parameters_of(self.structure.n_plant)
 
     @property
+    def noise_size(self) -> int:
+        """k_H, the number of entries of θ that belong to H."""
+        return self.dependence.size - self.dependence.parameters_of(self.structure.n_plant)
+
+    @property
     def parameter_names(self) -> tuple[str, ...]:
-        """A name for each entry of θ."""
+        """A name for each entry of θ, or of δ."""
+        if self.chart is not None:
+            return tuple(f"δ{i + 1}" for i in range(self.plant_size))
         return self.dependence.parameter_names(self.structure.coefficient_names)
+
+    @property
+    def plant_parameters(self) -> FloatArray:
+        """θ_G, or δ."""
+        return self.theta[: self.plant_size] if self.chart is None else self.theta @ self.chart
+
+    @property
+    def plant_covariance(self) -> FloatArray:
+        """The covariance of θ_G, or of δ."""
+        if self.chart is not None:
+            return np.asarray(self.chart.T @ self.covariance @ self.chart)
+        return self.covariance[: self.plant_size, : self.plant_size]
+
+    def pulled(self, by_zeta: ComplexArray, points: ArrayLike) -> ComplexArray:
+        """Derivatives by ζ_G (M, …, n_plant) as those by θ_G, or δ, (M, …, k_G)."""
+        by_theta = self.dependence.pulled(by_zeta, points)
+        return by_theta if self.chart is None else np.asarray(by_theta @ self.chart)
+
+    def direction(self, plant: FloatArray) -> FloatArray:
+        """A change of θ_G, or of δ, as one of θ (k,)."""
+        return np.pad(plant, (0, self.noise_size)) if self.chart is None else np.asarray(self.chart @ plant)
 
     def coefficients(self, points: ArrayLike) -> FloatArray:
         """ζ(p) at the operating points (M, s), as (M, n)."""
@@ -78,9 +111,9 @@ class Model:
     def response_covariance(self, points: ArrayLike, omega: FloatArray) -> FloatArray:
         """Covariance of (Re G, Im G) at the points (M, s) and ω (F,), as (M, F, 2, 2), to first order in P_θ."""
         gradient = self.structure.plant_gradient(self.coefficients(points), omega)
-        sensitivity = self.dependence.pulled(np.swapaxes(gradient, 1, 2), points)
+        sensitivity = self.pulled(np.swapaxes(gradient, 1, 2), points)
         parts = np.stack([sensitivity.real, sensitivity.imag], axis=-2)
-        return np.asarray(parts @ self.covariance[: self.plant_size, : self.plant_size] @ np.swapaxes(parts, -1, -2))
+        return np.asarray(parts @ self.plant_covariance @ np.swapaxes(parts, -1, -2))
 
     def poles(self, points: ArrayLike) -> ComplexArray:
         """Poles of G at the operating points (M, s), as (M, n_a)."""
@@ -88,20 +121,20 @@ class Model:
 
     @property
     def parameters(self) -> FloatArray:
-        """θ_G, then the parameters of each effect."""
-        return np.concatenate([self.theta[: self.plant_size], *(one.parameters() for one in self.effects)])
+        """θ_G, or δ, then the parameters of each effect."""
+        return np.concatenate([self.plant_parameters, *(one.parameters() for one in self.effects)])
 
     @property
     def known_covariance(self) -> FloatArray | None:
         """The covariance of `parameters`; without effects that of θ_G serves, with effects not yet estimated None."""
         if self.joint_covariance is None and not self.effects:
-            return self.covariance[: self.plant_size, : self.plant_size]
+            return self.plant_covariance
         return self.joint_covariance
 
     def with_parameters(self, values: FloatArray) -> "Model":
         """The same model with other parameters and no joint covariance."""
         plant = self.plant_size
-        theta = np.concatenate([values[:plant], self.theta[plant:]])
+        theta = self.theta + self.direction(values[:plant] - self.plant_parameters)
         lengths = [len(one.parameters()) for one in self.effects]
         parts = np.split(values[plant:], np.cumsum(lengths)[:-1]) if lengths else []
         effects = tuple(one.with_parameters(part) for one, part in zip(self.effects, parts, strict=True))

@@ -1,15 +1,21 @@
 """Rational models of the Box–Jenkins family at one operating point."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
-from identification.arrays import BoolArray, ComplexArray, FloatArray, require_positive
-from identification.errors import RangeError, ShapeError
+from identification.arrays import ComplexArray, FloatArray, require_positive
+from identification.errors import MisuseError, RangeError, ShapeError
+from identification.models.hold import held_ratio, held_ratio_gradient
+from identification.models.recursion import propagate
+from identification.models.structure import NOT_ALONG, Along, Group, Structure
+from identification.signals import HeldInput
 
 
 @dataclass(frozen=True)
-class RationalStructure:
+class RationalStructure(Structure):
     """Orders of y = G u + H e with G = B/A and H = C/D, all four polynomials parametrised independently.
 
     Discrete time (`sample_time` T in seconds), q = e^{−jωT} [Ghosh2018, (1), (4)]:
@@ -43,32 +49,18 @@ class RationalStructure:
             require_positive(self.sample_time, "sample time")
         require_positive(self.frequency_scale, "frequency scale")
 
-    @property
-    def is_discrete(self) -> bool:
-        """True in discrete time."""
-        return self.sample_time is not None
-
-    @property
-    def n_plant(self) -> int:
-        """Number of coefficients of G."""
-        return self.n_a + self.n_b + 1 + self.delay
-
-    @property
-    def n_noise(self) -> int:
-        """Number of coefficients of H."""
-        return self.n_c + self.n_d
-
-    @property
-    def size(self) -> int:
-        """n, the number of entries of ζ."""
-        return self.n_plant + self.n_noise
-
-    @property
-    def coefficient_names(self) -> tuple[str, ...]:
-        """The names of the entries of ζ, in order."""
+    @cached_property
+    def groups(self) -> tuple[Group, ...]:
+        """Each coefficient by itself: a1 …, b0 …, tau, c1 …, d1 …"""
         counted = (("a", 1, self.n_a), ("b", 0, self.n_b + 1), ("c", 1, self.n_c), ("d", 1, self.n_d))
         a, b, c, d = ([f"{letter}{first + i}" for i in range(count)] for letter, first, count in counted)
-        return (*a, *b, *(["tau"] if self.delay else []), *c, *d)
+        plant = (Group(name, (name,)) for name in (*a, *b, *(["tau"] if self.delay else [])))
+        return (*plant, *(Group(name, (name,), of_noise=True) for name in (*c, *d)))
+
+    @property
+    def order(self) -> int:
+        """n_a."""
+        return self.n_a
 
     def split(self, zeta: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]:
         """(a, b, τ, c, d) of ζ (…, n), without the leading ones; τ has a last axis of size 0 or 1."""
@@ -78,14 +70,29 @@ class RationalStructure:
         a, b, tau, c, d = np.split(zeta, ends, axis=-1)
         return a, b, tau, c, d
 
-    def plant_response(self, zeta: FloatArray, omega: FloatArray) -> ComplexArray:
+    def response(self, zeta: FloatArray, omega: FloatArray) -> ComplexArray:
+        """That of one input and output, as (…, F, 1, 1)."""
+        return self.plant_response(zeta, omega)[..., None, None]
+
+    def gradient(self, zeta: FloatArray, omega: FloatArray) -> ComplexArray:
+        """That of one input and output, as (…, F, 1, 1, n_plant)."""
+        return np.swapaxes(self.plant_gradient(zeta, omega), -1, -2)[..., None, None, :]
+
+    def plant_response(self, zeta: FloatArray, omega: FloatArray, held: HeldInput | None = None) -> ComplexArray:
         """G(ω; ζ) for ζ (…, n) and ω (F,) in rad/s, as (…, F)."""
+        if held is not None and not self.is_discrete:
+            return np.stack([held_ratio(*one, omega, held) for one in self._polynomials(zeta)]).reshape(
+                *zeta.shape[:-1], -1
+            )
         a, b, tau, _, _ = self.split(zeta)
         numerator_powers, denominator_powers = self.powers(omega)
         return self._delay_factor(tau, omega) * (b @ numerator_powers) / _monic(a, denominator_powers)
 
-    def plant_gradient(self, zeta: FloatArray, omega: FloatArray) -> ComplexArray:
+    def plant_gradient(self, zeta: FloatArray, omega: FloatArray, held: HeldInput | None = None) -> ComplexArray:
         """∂G/∂ζ_G for ζ (…, n) and ω (F,), as (…, n_plant, F)."""
+        if held is not None and not self.is_discrete:
+            rows = [held_ratio_gradient(*one, omega, held) for one in self._polynomials(zeta)]
+            return np.stack(rows)[:, : self.n_plant].reshape(*zeta.shape[:-1], self.n_plant, -1)
         a, b, tau, _, _ = self.split(zeta)
         numerator_powers, denominator_powers = self.powers(omega)
         over_a = (self._delay_factor(tau, omega) / _monic(a, denominator_powers))[..., None, :]
@@ -95,6 +102,18 @@ class RationalStructure:
         if self.delay:
             parts.append(-1j * omega * response)
         return np.concatenate(parts, axis=-2)
+
+    def _polynomials(self, zeta: FloatArray) -> Iterator[tuple[FloatArray, FloatArray, float, float]]:
+        """A with its leading one, B, τ and the scale of s, of each ζ in turn; raises MisuseError for n_b > n_a."""
+        if self.n_b > self.n_a:
+            raise MisuseError(
+                "the input was held between its samples, and a model with n_b > n_a would answer its steps with"
+                " impulses; choose n_b ≤ n_a, or state that the input is band limited",
+                "n_b",
+            )
+        for one in zeta.reshape(-1, zeta.shape[-1]):
+            a, b, tau, _, _ = self.split(one)
+            yield np.concatenate([[1.0], a]), b, float(tau[0]) if self.delay else 0.0, self.frequency_scale
 
     def noise_response(self, zeta: FloatArray, omega: FloatArray) -> ComplexArray:
         """H(ω; ζ) for ζ (…, n) and ω (F,), as (…, F)."""
@@ -114,11 +133,29 @@ class RationalStructure:
         scale = 1.0 if self.is_discrete else self.frequency_scale
         return scale * roots(self.split(zeta)[0])
 
-    def stable(self, zeta: FloatArray) -> BoolArray:
-        """Whether G is stable and H stable with a stable inverse, for ζ (…, n), as (…,)."""
-        if not self.is_discrete:
-            return np.asarray(np.all(self.poles(zeta).real < 0, axis=-1))
-        return np.asarray(self.radius(zeta) < 1)
+    def pole_gradient(self, zeta: FloatArray) -> tuple[ComplexArray, ComplexArray]:
+        """∂x/∂a_i = −x^{n_a − i} / A′(x) at the zeros x of A, in the unit of the poles."""
+        scale = 1.0 if self.is_discrete else self.frequency_scale
+        zeros = roots(self.split(zeta)[0])
+        differences = zeros[..., :, None] - zeros[..., None, :] + np.eye(self.n_a)
+        powers = zeros[..., None] ** np.arange(self.n_a - 1, -1, -1)
+        gradient = np.zeros((*zeros.shape, self.n_plant), dtype=np.complex128)
+        gradient[..., : self.n_a] = -scale * powers / differences.prod(axis=-1)[..., None]
+        return np.asarray(scale * zeros), gradient
+
+    def along(self, zeta: FloatArray, input: FloatArray) -> Along:
+        """The difference equation with coefficients that follow p(t) at once.
+
+        y(t) = −Σ_i a_i(p(t)) y(t−i) + Σ_i b_i(p(t)) u(t−n_k−i) = φ(t)ᵀ ζ_G(p(t))
+        δy(t) = −Σ_i a_i(p(t)) δy(t−i) + φ(t)ᵀ δζ_G(p(t))
+        """
+        if not self.is_discrete or self.delay:
+            raise MisuseError(NOT_ALONG, "model")
+        past = np.stack([_delayed(input[:, 0], self.n_k + i) for i in range(self.n_b + 1)], axis=1)
+        transition = _companion(zeta[:, : self.n_a])
+        y = _filtered(transition, np.sum(zeta[:, self.n_a : self.n_plant] * past, axis=1))
+        phi = np.concatenate([*(-_delayed(y, i + 1)[:, None] for i in range(self.n_a)), past], axis=1)
+        return Along(y[:, None], lambda moved: _filtered(transition, np.sum(phi * moved, axis=1))[:, None])
 
     def radius(self, zeta: FloatArray) -> FloatArray:
         """The largest modulus of a root of A, C or D in the z-plane, for ζ (…, n), as (…,); discrete time only."""
@@ -157,3 +194,29 @@ def roots(coefficients: FloatArray) -> ComplexArray:
     companion[..., 0, :] = -coefficients
     companion[..., np.arange(1, order), np.arange(order - 1)] = 1.0
     return np.asarray(np.linalg.eigvals(companion), dtype=np.complex128)
+
+
+def _delayed(signal: FloatArray, lag: int) -> FloatArray:
+    lag = min(lag, len(signal))
+    return np.concatenate([np.zeros(lag), signal[: len(signal) - lag]])
+
+
+def _companion(a: FloatArray) -> FloatArray:
+    """F(t) (N, n, n) of x(t+1) = F(t) x(t) + e_1 w(t), x(t) = (y(t−1), …, y(t−n))."""
+    count, n = a.shape
+    found = np.zeros((count, n, n))
+    if n:
+        found[:, 0] = -a
+        found[:, np.arange(1, n), np.arange(n - 1)] = 1.0
+    return found
+
+
+def _filtered(transition: FloatArray, forcing: FloatArray) -> FloatArray:
+    """y (N,) with y(t) = first entry of x(t+1)."""
+    count, n = transition.shape[:2]
+    if n == 0:
+        return forcing
+    driven = np.zeros((count, n))
+    driven[:, 0] = forcing
+    with np.errstate(over="ignore", invalid="ignore"):
+        return np.asarray(propagate(transition, driven, np.zeros(n))[1:, 0])

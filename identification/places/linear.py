@@ -10,7 +10,6 @@ from typing import ClassVar
 import numpy as np
 
 from identification.arrays import ComplexArray, FloatArray
-from identification.models.hold import held_response
 from identification.places.place import Effect, Flow, Setting
 from identification.signals import HeldInput
 
@@ -82,7 +81,7 @@ class FrequencyAxis(Effect):
         found = []
         for zeta, change in zip(setting.zeta, e, strict=True):
             stretched = None if held is None else replace(held, step=held.step / float(1 + change))
-            found.append(held_response(setting.structure, zeta, omega * (1 + change), stretched))
+            found.append(setting.structure.plant_response(zeta, omega * (1 + change), stretched))
         return np.stack(found)
 
 

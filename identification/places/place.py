@@ -11,8 +11,8 @@ import numpy as np
 
 from identification.arrays import ComplexArray, FloatArray
 from identification.comparison.batch import Batch
-from identification.models.hold import held_gradient, hold_factor
-from identification.models.rational import RationalStructure
+from identification.models.hold import hold_factor
+from identification.models.structure import Structure
 from identification.signals import HeldInput
 
 Quantity = Literal["frequency", "time", "input", "output", "velocity", "number"]
@@ -45,7 +45,7 @@ class Setting:
     (M, n_plant, s): ∂ζ_G by the scaled scheduling variables.
     """
 
-    structure: RationalStructure
+    structure: Structure
     zeta: FloatArray
     points: FloatArray
     zeta_slope: FloatArray
@@ -82,7 +82,7 @@ class Flow:
         if self.held is None:
             return np.asarray(gradient * drive[:, None, :])
         entering = self.entering * self.factor
-        seen = held_gradient(structure, zeta, omega, self.held) * entering[:, None, :]
+        seen = structure.plant_gradient(zeta, omega, self.held) * entering[:, None, :]
         return np.asarray(seen + gradient * (drive - entering)[:, None, :])
 
     @property

@@ -8,7 +8,6 @@ import numpy as np
 from identification.arrays import ComplexArray, FloatArray
 from identification.comparison.batch import Batch
 from identification.errors import MisuseError
-from identification.models.hold import held_response
 from identification.places.linear import Coefficient, FrequencyAxis
 from identification.places.linear_path import images, linear_path
 from identification.places.nonlinear import Actuator, Added, Feedback, Sensor
@@ -82,7 +81,7 @@ def _response(setting: Setting, acting: Sequence[Acting], batch: Batch, held: He
     for effect, e in acting:
         if isinstance(effect, FrequencyAxis):
             return effect.response(e[0], setting, batch.omega, held)
-    return held_response(setting.structure, setting.zeta, batch.omega, held)
+    return setting.structure.plant_response(setting.zeta, batch.omega, held)
 
 
 def _finer(setting: Setting, acting: Sequence[Acting], place: type[Actuator] | type[Feedback]) -> int:

@@ -5,8 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from identification.affine_state_space import AffineStateSpace, Matrices
-from identification.arrays import FloatArray
+from identification.arrays import FloatArray, IntArray
 from identification.errors import RangeError
+from identification.models.chart import perpendicular
 from identification.scheduling import SchedulingVariable
 
 
@@ -57,6 +58,13 @@ class AffineSizes:
         """The model of θ."""
         return AffineStateSpace(*self.split(theta), sample_time, variables)
 
+    @property
+    def in_products(self) -> IntArray:
+        """Where in θ each entry stands when the functions 1, p_1, p_2, … stand as products do: the last p first."""
+        functions = [0, *range(self.n_scheduling, 0, -1)]
+        numbers = self.split(np.arange(self.size, dtype=np.float64))
+        return np.concatenate([part[functions].ravel() for part in numbers]).astype(np.int64)
+
     def similarity_tangent(self, theta: FloatArray) -> FloatArray:
         """The directions (size, n_x²) of a change of the state basis x' = (I + εE)⁻¹ x [Goos2014, (10)].
 
@@ -70,8 +78,7 @@ class AffineSizes:
 
     def chart(self, theta: FloatArray) -> FloatArray:
         """An orthonormal basis Q (size, free) of what is perpendicular to the changes of the state basis at θ."""
-        u, _, _ = np.linalg.svd(self.similarity_tangent(theta), full_matrices=True)
-        return np.asarray(u[:, self.order**2 :])
+        return perpendicular(self.similarity_tangent(theta))
 
 
 def stated_order(order: int | None) -> int:

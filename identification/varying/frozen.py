@@ -1,133 +1,25 @@
-"""An affine state-space model with its scheduling held still, as a model that is compared and diagnosed like others."""
+"""An affine state-space model as one of structure and dependence, compared and diagnosed like others."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
-from numpy.typing import ArrayLike
 from scipy.linalg import block_diag
 
 from identification.affine_estimate import AffineEstimate
 from identification.affine_state_space import AffineStateSpace
-from identification.arrays import BoolArray, ComplexArray, FloatArray
+from identification.arrays import FloatArray
 from identification.bases.polynomial import Polynomial
 from identification.errors import MisuseError
+from identification.models.chart import gauge_tangent, perpendicular
 from identification.models.model import Model
-from identification.models.rational import RationalStructure
+from identification.models.state_space import StateSpaceStructure
 from identification.outcome import Outcome
 from identification.places.linear import Coefficient
 from identification.places.placed import PlacedEffect
-from identification.scheduling import Numbers, ParameterDependence, ProductBasis
+from identification.scheduling import ParameterDependence, ProductBasis
 from identification.varying.affine_parameters import AffineSizes
 
 ROUNDS, BALANCED = 60, 1e-13
-
-
-@dataclass(frozen=True)
-class FrozenStructure(RationalStructure):
-    """G = C (zI − A)⁻¹ B + D with one input and output, ζ = (A, B, C, D) row by row: n_a = n_b = n_x, n_k = 0."""
-
-    @classmethod
-    def of(cls, order: int, sample_time: float) -> "FrozenStructure":
-        """That of n_x states."""
-        return cls(n_a=order, n_b=order, sample_time=sample_time)
-
-    @property
-    def n_plant(self) -> int:
-        """(n_x + 1)²."""
-        return (self.n_a + 1) ** 2
-
-    @property
-    def coefficient_names(self) -> tuple[str, ...]:
-        """A(1,1) … D."""
-        n = range(1, self.n_a + 1)
-        return (*(f"A({i},{k})" for i in n for k in n), *(f"B({i})" for i in n), *(f"C({i})" for i in n), "D")
-
-    def matrices(self, zeta: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        """A (…, n_x, n_x), B (…, n_x, 1), C (…, 1, n_x), D (…, 1, 1) of ζ (…, n)."""
-        n = self.n_a
-        a, b, c, d = np.split(zeta, [n * n, n * n + n, n * n + 2 * n], axis=-1)
-        lead = zeta.shape[:-1]
-        return a.reshape(*lead, n, n), b[..., :, None], c[..., None, :], d[..., None]
-
-    def plant_response(self, zeta: FloatArray, omega: FloatArray) -> ComplexArray:
-        """G(ω; ζ) for ζ (…, n) and ω (F,) in rad/s, as (…, F)."""
-        state, _ = self._parts(zeta, omega)
-        _, _, c, d = self.matrices(zeta)
-        return np.asarray((c[..., None, :, :] @ state)[..., 0, 0] + d[..., 0])
-
-    def plant_gradient(self, zeta: FloatArray, omega: FloatArray) -> ComplexArray:
-        """∂G/∂ζ for ζ (…, n) and ω (F,), as (…, n, F): C R e_i e_kᵀ R B for A(i,k), with R = (zI − A)⁻¹."""
-        state, through = self._parts(zeta, omega)
-        left, right = through[..., 0, :], state[..., 0]
-        by_a = (left[..., :, None] * right[..., None, :]).reshape(*left.shape[:-1], self.n_a**2)
-        one = np.ones((*left.shape[:-1], 1), dtype=np.complex128)
-        return np.asarray(np.swapaxes(np.concatenate([by_a, left, right, one], axis=-1), -1, -2))
-
-    def poles(self, zeta: FloatArray) -> ComplexArray:
-        """Eigenvalues of A."""
-        return np.asarray(np.linalg.eigvals(self.matrices(zeta)[0]), dtype=np.complex128)
-
-    def stable(self, zeta: FloatArray) -> BoolArray:
-        """Whether they lie inside the unit circle."""
-        return np.asarray(self.radius(zeta) < 1)
-
-    def radius(self, zeta: FloatArray) -> FloatArray:
-        """The largest modulus of a pole."""
-        return np.asarray(abs(self.poles(zeta)).max(axis=-1))
-
-    def _parts(self, zeta: FloatArray, omega: FloatArray) -> tuple[ComplexArray, ComplexArray]:
-        """R B (…, F, n_x, 1) and C R (…, F, 1, n_x)."""
-        a, b, c, _ = (part[..., None, :, :] for part in self.matrices(zeta))
-        z = np.exp(1j * omega * (self.sample_time or 0.0))[:, None, None]
-        resolvent = np.linalg.inv(z * np.eye(self.n_a) - a)
-        return np.asarray(resolvent @ b), np.asarray(c @ resolvent)
-
-
-@dataclass(frozen=True)
-class ChartedDependence(ParameterDependence):
-    """ζ(p) = T(p) Q δ: the entries of an affine model along a chart Q (size, free) of `AffineSizes`, flattened here."""
-
-    chart: tuple[tuple[float, ...], ...] = ()
-
-    @property
-    def size(self) -> int:
-        """That of δ."""
-        return len(self.chart[0])
-
-    @property
-    def needed_operating_points(self) -> int:
-        """One for the constant and one for each variable."""
-        return len(self.variables) + 1
-
-    def parameters_of(self, coefficients: int) -> int:
-        """All of δ."""
-        return self.size
-
-    def coefficients(self, theta: FloatArray, points: ArrayLike) -> FloatArray:
-        """T(p) Q δ."""
-        return np.asarray(self.matrix(points) @ theta)
-
-    def pulled(self, by_zeta: Numbers, points: ArrayLike) -> Numbers:
-        """by_zeta T(p) Q."""
-        spread = self.matrix(points)
-        return np.asarray(by_zeta @ spread.reshape(len(spread), *(1,) * (by_zeta.ndim - 3), *spread.shape[1:]))
-
-    def parameter_names(self, coefficient_names: object) -> tuple[str, ...]:
-        """δ1, δ2, …"""
-        return tuple(f"δ{i + 1}" for i in range(self.size))
-
-    def matrix(self, points: ArrayLike) -> FloatArray:
-        """T(p) Q at the operating points (M, s), as (M, n, free)."""
-        p = self.points(points)
-        weights = np.concatenate([np.ones((len(p), 1)), p], axis=1)
-        chart = np.array(self.chart)
-        n = int(np.sqrt(len(self.bases))) - 1
-        m, parts, start = weights.shape[1], [], 0
-        for rows in (n * n, n, n, 1):
-            stack = chart[start : start + m * rows].reshape(m, rows, -1)
-            parts.append(np.tensordot(weights, stack, axes=1))
-            start += m * rows
-        return np.asarray(np.concatenate(parts, axis=1))
 
 
 def smallest_basis(model: AffineStateSpace) -> FloatArray:
@@ -193,32 +85,31 @@ def frozen(estimate: AffineEstimate, effects: tuple[PlacedEffect, ...] = (), joi
     basis = smallest_basis(model)
     balanced = model.transformed(basis)
     sizes = AffineSizes.of(balanced)
-    theta = sizes.join((balanced.a, balanced.b, balanced.c, balanced.d))
-    chart = sizes.chart(theta)
-    dependence = ChartedDependence(
-        model.variables,
-        (ProductBasis((Polynomial(0),) * len(model.variables)),) * (sizes.order + 1) ** 2,
-        chart=tuple(tuple(map(float, row)) for row in chart),
+    structure = StateSpaceStructure(sizes.order, sample_time=model.sample_time)
+    affine = ProductBasis((Polynomial(1),) * sizes.n_scheduling, total_degree=1)
+    dependence = ParameterDependence(
+        model.variables, (affine,) * 4, tuple(len(one.entries) for one in structure.groups)
     )
-    inner = chart.T @ _turning(sizes, basis)
-    known = estimate.covariance
-    covariance = np.zeros((sizes.free, sizes.free)) if known is None else inner @ known @ inner.T
-    base = Model(
-        FrozenStructure.of(sizes.order, model.sample_time), dependence, chart.T @ theta, covariance, noise_variance=1.0
-    )
-    if not effects:
-        return replace(base, joint_covariance=None if known is None else covariance)
-    return replace(base, effects=effects, joint_covariance=None if joint is None else _on_both_sides(inner, joint))
+    theta = sizes.join((balanced.a, balanced.b, balanced.c, balanced.d))[sizes.in_products]
+    turning = _turning(sizes, basis)[sizes.in_products]
+    known = np.zeros((sizes.size,) * 2) if estimate.covariance is None else estimate.covariance
+    free = perpendicular(gauge_tangent(structure, dependence, theta))
+    found = Model(structure, dependence, theta, turning @ known @ turning.T, 1.0, effects, chart=free)
+    if effects:
+        both = None if joint is None else _on_both_sides(free.T @ turning, joint)
+    else:
+        both = None if estimate.covariance is None else found.plant_covariance
+    return replace(found, joint_covariance=both)
 
 
 def affine_estimate(model: Model) -> tuple[AffineEstimate, FloatArray | None]:
     """The affine model that `frozen` made this one of, as it is now, and the joint covariance of θ and the effects."""
-    dependence, structure = model.dependence, model.structure
-    assert isinstance(dependence, ChartedDependence), "made by `frozen`"
-    chart = np.array(dependence.chart)
-    sizes = AffineSizes(structure.n_a, len(dependence.variables), 1, 1)
-    affine = sizes.model(chart @ model.theta, structure.sample_time or 0.0, dependence.variables)
-    joint = None if model.joint_covariance is None else _on_both_sides(chart, model.joint_covariance)
+    assert model.chart is not None, "made by `frozen`"
+    variables = model.dependence.variables
+    sizes = AffineSizes(model.structure.order, len(variables), 1, 1)
+    back = np.argsort(sizes.in_products)
+    affine = sizes.model(model.theta[back], model.structure.sample_time or 0.0, variables)
+    joint = None if model.joint_covariance is None else _on_both_sides(model.chart[back], model.joint_covariance)
     covariance = None if joint is None else joint[: sizes.size, : sizes.size]
     return AffineEstimate(affine, Outcome("converged"), (), covariance), joint
 

@@ -6,9 +6,10 @@ from typing import Annotated, ClassVar
 import numpy as np
 
 from identification.affine_estimate import AffineEstimate
-from identification.affine_state_space import AffineStateSpace, frozen_matrices, propagate, simulate_matrices
+from identification.affine_state_space import AffineStateSpace, frozen_matrices, simulate_matrices
 from identification.arrays import FloatArray
 from identification.errors import MisuseError, NotIdentifiableError, RangeError
+from identification.models.recursion import propagate
 from identification.outcome import Outcome
 from identification.scheduling import with_constant
 from identification.varying.affine_parameters import stated_order

@@ -5,14 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from identification.affine_estimate import AffineEstimate
-from identification.affine_state_space import (
-    AffineStateSpace,
-    best_fit_rate,
-    propagate,
-    variance_accounted_for,
-)
+from identification.affine_state_space import AffineStateSpace, best_fit_rate, variance_accounted_for
 from identification.arrays import FloatArray
 from identification.errors import RangeError, ShapeError
+from identification.models.recursion import propagate
 from identification.varying.records import VaryingRecord
 
 RANK = 1e-10

@@ -26,7 +26,7 @@ class ParameterDeviation:
 
     def matrices(self, model: Model) -> FloatArray:
         """R (1, k, k) or one per parameter (J, k, k); raises ShapeError and RangeError."""
-        k = model.dependence.size
+        k = model.plant_size + model.noise_size
         if len(self.standard_deviations) != k:
             raise ShapeError(
                 f"{len(self.standard_deviations)} standard deviations were given for {k} parameters"

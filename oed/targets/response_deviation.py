@@ -37,10 +37,10 @@ class ResponseDeviation:
         omega = np.geomspace(lower, self.maximum_rad_per_second, self.count) if lower > 0 else self._linear()
         points = np.array(self.operating_points, ndmin=2)
         gradient = model.structure.plant_gradient(model.coefficients(points), omega)
-        g = model.dependence.pulled(np.swapaxes(gradient, 1, 2), points)
+        g = model.pulled(np.swapaxes(gradient, 1, 2), points)
         gain = abs(model.frequency_response(points, omega)) if self.relative else 1.0
         delta = np.broadcast_to(self.standard_deviation * gain, g.shape[:2]).reshape(-1, 1, 1)
-        g = np.pad(g.reshape(-1, g.shape[-1]), ((0, 0), (0, model.dependence.size - g.shape[-1])))
+        g = np.pad(g.reshape(-1, g.shape[-1]), ((0, 0), (0, model.noise_size)))
         if np.any(delta <= 0):
             raise RangeError("the response is zero at a frequency of the band; use an absolute deviation", "relative")
         v = np.stack([g.real, g.imag], axis=-1) / delta

@@ -1,9 +1,11 @@
 """Simulations along p(t): the equations sample by sample, and deviations that are those of the parameters."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from identification.along import simulate_rational, simulate_state_space
+from identification.along import simulate_along, simulate_state_space
 from identification.bases.polynomial import Polynomial
 from identification.errors import MisuseError, RangeError
 from identification.models.model import Model
@@ -34,7 +36,7 @@ def signals(seed: int = 2) -> tuple[np.ndarray, np.ndarray]:
 @pytest.mark.parametrize("n_k", [0, 1, 3])
 def test_coefficients_follow_p_at_once(n_k: int) -> None:
     one, (u, p) = model(n_k), signals()
-    found = simulate_rational(one, u, p).output[:, 0]
+    found = simulate_along(one, u[:, None], p).output[:, 0]
     zeta = one.coefficients(p)
     y = np.zeros(SAMPLES)
     for t in range(SAMPLES):
@@ -47,27 +49,24 @@ def test_coefficients_follow_p_at_once(n_k: int) -> None:
 
 def test_held_still_it_is_the_simulation_at_that_point() -> None:
     one, (u, _) = model(), signals()
-    found = simulate_rational(one, u, np.full((SAMPLES, 1), 0.3)).output[:, 0]
+    found = simulate_along(one, u[:, None], np.full((SAMPLES, 1), 0.3)).output[:, 0]
     assert np.allclose(found, simulate(one.structure, one.coefficients([[0.3]])[0], u), atol=1e-12)
 
 
 def test_the_deviation_is_that_of_the_parameters_to_first_order() -> None:
     one, (u, p) = model(), signals()
-    found = simulate_rational(one, u, p)
+    found = simulate_along(one, u[:, None], p)
     gradient = np.zeros((SAMPLES, one.plant_size))
     for k in range(one.plant_size):
         step = np.zeros(len(one.theta))
         step[k] = 1e-6
-        up, down = (
-            simulate_rational(Model(one.structure, one.dependence, one.theta + sign * step, one.covariance, 1.0), u, p)
-            for sign in (1, -1)
-        )
+        up, down = (simulate_along(replace(one, theta=one.theta + sign * step), u[:, None], p) for sign in (1, -1))
         gradient[:, k] = (up.output - down.output)[:, 0] / 2e-6
     covariance = one.covariance[: one.plant_size, : one.plant_size]
     expected = np.sqrt(np.einsum("tk,kl,tl->t", gradient, covariance, gradient))
     assert found.deviation is not None
     assert np.allclose(found.deviation[:, 0], expected, rtol=1e-5, atol=1e-9)
-    assert simulate_rational(one, u, p, covariance_known=False).deviation is None
+    assert simulate_along(one, u[:, None], p, covariance_known=False).deviation is None
 
 
 def test_state_space_models_of_frozen_points_follow_p_too() -> None:
@@ -84,9 +83,9 @@ def test_state_space_models_of_frozen_points_follow_p_too() -> None:
 def test_misuse_is_refused() -> None:
     one, (u, p) = model(), signals()
     with pytest.raises(RangeError, match="outside its range"):
-        simulate_rational(one, u, 2 * p)
+        simulate_along(one, u[:, None], 2 * p)
     long, unstable = np.ones(5000), Model(one.structure, one.dependence, 3 * one.theta, one.covariance, 1.0)
     with pytest.raises(RangeError, match="unstable along"):
-        simulate_rational(unstable, long, 0 * long[:, None])
+        simulate_along(unstable, long[:, None], 0 * long[:, None])
     with pytest.raises(MisuseError, match="delay"):
-        simulate_rational(model(n_d=0, delay=True), u, p)
+        simulate_along(model(n_d=0, delay=True), u[:, None], p)

@@ -56,7 +56,7 @@ def _curves(chain: Chain, model: ModelDocument) -> list[Plot]:
     along = np.linspace(variable.minimum, variable.maximum, FINE)[:, None]
     some: list[OperatingPoint] = [(float(p),) for p in along[[0, FINE // 2, -1], 0]]
     plots = [bode(known, some, _frequencies(chain, known), chain.axes)]
-    return [*plots, poles(known, along, chain.axes)] if known.structure.n_a else plots
+    return [*plots, poles(known, along, chain.axes)] if known.structure.order else plots
 
 
 def _frequencies(chain: Chain, model: Model) -> FloatArray:

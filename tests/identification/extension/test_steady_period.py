@@ -134,7 +134,7 @@ def test_the_deviation_is_that_of_small_changes_of_all_parameters():
     model = carrying((CubicStiffness(), 30.0), (QuadraticSensor(), 0.1), (Resonance(10.0, 0.05), 1.0))
     generator = np.random.default_rng(2)
     factor = generator.standard_normal((len(model.parameters),) * 2) * 1e-3 * abs(model.parameters)[:, None]
-    known = replace(model, covariance=factor @ factor.T)
+    known = replace(model, joint_covariance=factor @ factor.T)
     found = steady_period(known, INPUT, SAMPLE_TIME, [[0.5]])
     draws = [
         steady_period(

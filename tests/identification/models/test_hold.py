@@ -5,7 +5,7 @@ import pytest
 from scipy.signal import cont2discrete
 
 from identification.errors import MisuseError, RangeError
-from identification.models.hold import held_gradient, held_response, hold_factor
+from identification.models.hold import hold_factor
 from identification.models.rational import RationalStructure
 from identification.signals import HeldInput
 
@@ -27,7 +27,7 @@ def test_samples_answer_as_a_sampled_model_does(hold, n_b):
     )
     z = np.exp(1j * OMEGA * T)
     wanted = np.polyval(num.ravel(), z) / np.polyval(den, z)
-    assert np.allclose(held_response(structure, zeta, OMEGA, HeldInput(T, hold)), wanted, rtol=1e-9)
+    assert np.allclose(structure.plant_response(zeta, OMEGA, HeldInput(T, hold)), wanted, rtol=1e-9)
 
 
 @pytest.mark.parametrize(("hold", "tau"), [("zero", 0.25), ("first", 0.25), ("zero", 0.2), ("first", 0.03)])
@@ -49,7 +49,7 @@ def test_a_delay_that_is_no_multiple_of_the_sample_time_is_exact(hold, tau):
     y = np.array(outputs)[np.arange(16 * (periods - 1), 16 * periods) * finer - round(tau / h)]
     omega = 2 * np.pi * np.fft.rfftfreq(16, T)
     structure = RationalStructure(2, 1, delay=True)
-    response = held_response(structure, np.append(SECOND, tau), omega, HeldInput(T, hold))
+    response = structure.plant_response(np.append(SECOND, tau), omega, HeldInput(T, hold))
     assert np.allclose(np.fft.irfft(response * np.fft.rfft(u), 16), y, atol=1e-6)
 
 
@@ -60,11 +60,11 @@ def test_derivatives_are_those_of_the_response(hold, n_b, delay):
     structure = RationalStructure(2, n_b, frequency_scale=2.0, delay=delay)
     zeta = np.array([0.4, 1.3, 0.7, 0.9, -0.3][: n_b + 3] + [0.234] * delay)
     held = HeldInput(T, hold)
-    found = held_gradient(structure, np.stack([zeta, 1.1 * zeta]), OMEGA, held)
+    found = structure.plant_gradient(np.stack([zeta, 1.1 * zeta]), OMEGA, held)
     assert found.shape == (2, structure.n_plant, len(OMEGA))
     for i in range(len(zeta)):
         step = 1e-6 * np.eye(len(zeta))[i]
-        ends = [held_response(structure, zeta + sign * step, OMEGA, held) for sign in (1, -1)]
+        ends = [structure.plant_response(zeta + sign * step, OMEGA, held) for sign in (1, -1)]
         assert np.allclose(found[0, i], (ends[0] - ends[1]) / 2e-6, rtol=1e-6, atol=1e-7)
 
 
@@ -72,11 +72,11 @@ def test_fast_sampling_leaves_the_response_of_the_plant():
     structure, omega = RationalStructure(2, 1), np.array([0.0, 0.5, 1.0, 2.0])
     fast = HeldInput(1e-4, "first")
     assert np.allclose(
-        held_response(structure, SECOND, omega, fast), structure.plant_response(SECOND, omega), rtol=1e-6
+        structure.plant_response(SECOND, omega, fast), structure.plant_response(SECOND, omega), rtol=1e-6
     )
     zero = HeldInput(1e-3)
     wanted = structure.plant_response(SECOND, omega) * hold_factor(omega, zero)
-    assert np.allclose(held_response(structure, SECOND, omega, zero), wanted, rtol=1e-6)
+    assert np.allclose(structure.plant_response(SECOND, omega, zero), wanted, rtol=1e-6)
 
 
 def test_an_integrator_and_a_gain_are_seen_exactly():
@@ -84,23 +84,23 @@ def test_an_integrator_and_a_gain_are_seen_exactly():
     omega = OMEGA[1:]
     z = np.exp(1j * omega * T)
     integrator = RationalStructure(1, 0)
-    summed = held_response(integrator, np.array([0.0, 2.0]), omega, HeldInput(T))
+    summed = integrator.plant_response(np.array([0.0, 2.0]), omega, HeldInput(T))
     assert np.allclose(summed, 2 * T / (z - 1))
-    trapezoids = held_response(integrator, np.array([0.0, 2.0]), omega, HeldInput(T, "first"))
+    trapezoids = integrator.plant_response(np.array([0.0, 2.0]), omega, HeldInput(T, "first"))
     assert np.allclose(trapezoids, T * (z + 1) / (z - 1))
-    assert np.allclose(held_response(RationalStructure(0, 0), np.array([3.0]), OMEGA, HeldInput(T)), 3.0)
+    assert np.allclose(RationalStructure(0, 0).plant_response(np.array([3.0]), OMEGA, HeldInput(T)), 3.0)
 
 
 def test_band_limited_inputs_and_discrete_models_are_left_as_they_are():
     sampled = RationalStructure(1, 0, 1, sample_time=T)
     zeta = np.array([-0.5, 1.0])
-    assert np.array_equal(held_response(sampled, zeta, OMEGA, HeldInput(T)), sampled.plant_response(zeta, OMEGA))
+    assert np.array_equal(sampled.plant_response(zeta, OMEGA, HeldInput(T)), sampled.plant_response(zeta, OMEGA))
     structure = RationalStructure(2, 1)
-    assert np.array_equal(held_gradient(structure, SECOND, OMEGA, None), structure.plant_gradient(SECOND, OMEGA))
+    assert np.array_equal(structure.plant_gradient(SECOND, OMEGA, None), structure.plant_gradient(SECOND, OMEGA))
 
 
 def test_a_held_input_into_a_derivative_is_refused():
     with pytest.raises(MisuseError, match="impulses"):
-        held_response(RationalStructure(1, 2), np.ones(4), OMEGA, HeldInput(T))
+        RationalStructure(1, 2).plant_response(np.ones(4), OMEGA, HeldInput(T))
     with pytest.raises(RangeError):
         HeldInput(0.0)

@@ -1,0 +1,153 @@
+"""What a model of one operating point is: coefficients ζ, and what they say of G and H."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from identification.arrays import BoolArray, ComplexArray, FloatArray
+from identification.errors import MisuseError
+from identification.signals import HeldInput
+
+NOT_ALONG = "only models in discrete time without an estimated delay are simulated along p(t)"
+
+
+@dataclass(frozen=True)
+class Group:
+    """Coefficients that share basis functions: a single one, or all entries of a matrix; those of H come last."""
+
+    name: str
+    entries: tuple[str, ...]
+    of_noise: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Along:
+    """The output y (N, n_y) while ζ follows p(t), and how it changes, (N, n_y), with changes dζ_G (N, n_plant)."""
+
+    output: FloatArray
+    change: Callable[[FloatArray], FloatArray]
+
+
+class Structure(ABC):
+    """y = G u + H e at one operating point, with coefficients ζ (n,): those of G first, then those of H.
+
+    A structure is one file with the mathematics alone; leading axes (…) of ζ are many models at once. `sample_time` in
+    seconds, None for continuous time; `frequency_scale` in rad/s, where a model without data is looked at.
+    """
+
+    sample_time: float | None
+    frequency_scale: float = 1.0
+
+    @property
+    @abstractmethod
+    def groups(self) -> tuple[Group, ...]:
+        """The coefficients in order."""
+
+    @property
+    @abstractmethod
+    def order(self) -> int:
+        """n_x, the number of poles."""
+
+    @property
+    def outputs(self) -> int:
+        """n_y."""
+        return 1
+
+    @property
+    def inputs(self) -> int:
+        """n_u."""
+        return 1
+
+    @property
+    def is_discrete(self) -> bool:
+        """True in discrete time."""
+        return self.sample_time is not None
+
+    @cached_property
+    def coefficient_names(self) -> tuple[str, ...]:
+        """The names of the entries of ζ, in order."""
+        return tuple(name for group in self.groups for name in group.entries)
+
+    @cached_property
+    def n_plant(self) -> int:
+        """Number of coefficients of G."""
+        return sum(len(group.entries) for group in self.groups if not group.of_noise)
+
+    @cached_property
+    def n_noise(self) -> int:
+        """Number of coefficients of H."""
+        return sum(len(group.entries) for group in self.groups if group.of_noise)
+
+    @cached_property
+    def size(self) -> int:
+        """n, the number of entries of ζ."""
+        return self.n_plant + self.n_noise
+
+    @abstractmethod
+    def response(self, zeta: FloatArray, omega: FloatArray) -> ComplexArray:
+        """G(ω; ζ) for ζ (…, n) and ω (F,) in rad/s, as (…, F, n_y, n_u)."""
+
+    @abstractmethod
+    def gradient(self, zeta: FloatArray, omega: FloatArray) -> ComplexArray:
+        """∂G/∂ζ_G for ζ (…, n) and ω (F,), as (…, F, n_y, n_u, n_plant)."""
+
+    @abstractmethod
+    def poles(self, zeta: FloatArray) -> ComplexArray:
+        """Poles of G for ζ (…, n), as (…, n_x): in the z-plane, or in rad/s in continuous time."""
+
+    @abstractmethod
+    def pole_gradient(self, zeta: FloatArray) -> tuple[ComplexArray, ComplexArray]:
+        """Poles (…, n_x) and their derivatives by ζ_G, (…, n_x, n_plant); infinite at poles that coincide."""
+
+    @abstractmethod
+    def along(self, zeta: FloatArray, input: FloatArray) -> Along:
+        """The output from rest for u (N, n_u), ζ (N, n) following p(t) at once; numbers that grow beyond all are kept.
+
+        Raises MisuseError where no simulation along p(t) is defined: in continuous time, or with an estimated delay.
+        """
+
+    def plant_response(self, zeta: FloatArray, omega: FloatArray, held: HeldInput | None = None) -> ComplexArray:
+        """G from the first input to the first output, as (…, F).
+
+        `held`: as its samples show it in continuous time with an input held between them; the same in discrete time.
+        Raises MisuseError where that is not defined.
+        """
+        self._require_unheld(held)
+        return np.asarray(self.response(zeta, omega)[..., 0, 0])
+
+    def plant_gradient(self, zeta: FloatArray, omega: FloatArray, held: HeldInput | None = None) -> ComplexArray:
+        """∂G/∂ζ_G of `plant_response`, as (…, n_plant, F)."""
+        self._require_unheld(held)
+        return np.swapaxes(self.gradient(zeta, omega)[..., 0, 0, :], -1, -2)
+
+    def _require_unheld(self, held: HeldInput | None) -> None:
+        if held is not None and not self.is_discrete:
+            raise MisuseError("this structure in continuous time is not seen through a held input", "structure")
+
+    def noise_response(self, zeta: FloatArray, omega: FloatArray) -> ComplexArray:
+        """H(ω; ζ) for ζ (…, n) and ω (F,), as (…, F); one unless overridden."""
+        return np.ones((*zeta.shape[:-1], len(omega)), dtype=np.complex128)
+
+    def noise_gradient(self, zeta: FloatArray, omega: FloatArray) -> ComplexArray:
+        """∂H/∂ζ_H for ζ (…, n) and ω (F,), as (…, n_noise, F)."""
+        return np.zeros((*zeta.shape[:-1], 0, len(omega)), dtype=np.complex128)
+
+    def stable(self, zeta: FloatArray) -> BoolArray:
+        """Whether G is stable and H stable with a stable inverse, for ζ (…, n), as (…,)."""
+        if not self.is_discrete:
+            return np.asarray(np.all(self.poles(zeta).real < 0, axis=-1))
+        return np.asarray(self.radius(zeta) < 1)
+
+    def radius(self, zeta: FloatArray) -> FloatArray:
+        """The largest modulus of a pole, or of a zero of H, in the z-plane, for ζ (…, n), as (…,)."""
+        return np.asarray(abs(self.poles(zeta)).max(axis=-1, initial=0.0))
+
+    def gauge(self, zeta: FloatArray) -> FloatArray:
+        """Directions of ζ (…, n) that no response shows, (…, n, g), none unless overridden.
+
+        They are linear in ζ, and what changes of a group depends on this group alone.
+        """
+        return np.zeros((*zeta.shape, 0))
