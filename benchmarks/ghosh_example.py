@@ -4,6 +4,7 @@ import numpy as np
 
 from identification.arrays import FloatArray
 from identification.bases.polynomial import Polynomial
+from identification.channels import UNSTATED
 from identification.models.rational import RationalStructure
 from identification.scheduling import ParameterDependence, ProductBasis, SchedulingVariable
 from identification.signals import TimeRecord
@@ -24,4 +25,4 @@ def measured(point: tuple[float, ...], u: FloatArray, generator: np.random.Gener
     """The record of the plant at an operating point for an input u (N,), from rest."""
     zeta = (DEPENDENCE.matrix([point]) @ THETA)[0]
     noise = generator.standard_normal(len(u)) * np.sqrt(NOISE_VARIANCE)
-    return TimeRecord(u, simulate(STRUCTURE, zeta, u, noise), 1.0, point)
+    return TimeRecord(u, simulate(STRUCTURE, zeta, u, noise), 1.0, point, channels=UNSTATED.at_level(0.0))

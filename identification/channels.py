@@ -1,6 +1,6 @@
 """What the input and the output of an experiment are: their quantities decide where physical effects act."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal, get_args
 
 from identification.errors import MisuseError
@@ -68,6 +68,10 @@ class Channels:
 
     input: Channel = Channel()
     output: Channel = Channel()
+
+    def at_level(self, level: float) -> "Channels":
+        """The same, both moving about this level."""
+        return Channels(replace(self.input, level=level), replace(self.output, level=level))
 
 
 UNSTATED = Channels()

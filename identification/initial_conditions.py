@@ -1,11 +1,13 @@
-"""Prediction errors of a record that does not start from rest: the unknown initial state is fitted and marginalised."""
+"""Prediction errors of a record whose initial state and operating level are not known: both are marginalised."""
 
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
 from scipy.linalg import qr
 
 from identification.arrays import FloatArray
+from identification.errors import NotIdentifiableError
 from identification.filtering import lfilter
 from identification.likelihood import delayed, prediction_errors
 from identification.models.rational import RationalStructure
@@ -14,25 +16,56 @@ from identification.signals import TimeRecord
 InitialConditions = Literal["zero", "estimate"]
 
 
-def free_parameters(structure: RationalStructure, initial: InitialConditions) -> int:
-    """How many entries the unknown initial state of one record has: n_a when it is estimated, otherwise none."""
-    return structure.n_a if initial == "estimate" else 0
+def fitted_record(
+    structure: RationalStructure, record: TimeRecord, initial: InitialConditions
+) -> tuple[RationalStructure, TimeRecord]:
+    """What is fitted of a record: y(t + n_k) beside u(t) about their levels, and the structure without the n_k samples.
+
+    What the plant did within the first n_k samples the input before the record did, which is not known. With "zero" the
+    record stays as it is, and only stated levels come off: from rest at u = 0 a mean value is an excitation.
+    Raises NotIdentifiableError for a record that is not longer than the delay.
+    """
+    if initial == "zero":
+        return structure, record.about_its_level() if record.level_known else record
+    lag, kept = structure.n_k, len(record) - structure.n_k
+    if kept < 2:
+        raise NotIdentifiableError(
+            f"the record of {len(record)} samples is no longer than the delay of {lag} samples; record longer", "input"
+        )
+    moved = replace(record.about_its_level(), period=None, reference=None)
+    return replace(structure, n_k=0), replace(moved, input=moved.input[:kept], output=moved.output[lag:])
+
+
+def state_size(structure: RationalStructure) -> int:
+    """How many numbers sum up the input and output before a record: max(n_a, n_b) where the plant has no delay."""
+    return max(structure.n_a, structure.n_b)
+
+
+def free_parameters(structure: RationalStructure, initial: InitialConditions, record: TimeRecord) -> int:
+    """How many unknowns one record adds: its initial state, and the output's level unless it was stated.
+
+    None where the record is said to start from rest.
+    """
+    return state_size(structure) + (0 if record.level_known else 1) if initial == "estimate" else 0
 
 
 def errors_from(
     structure: RationalStructure, zeta: FloatArray, record: TimeRecord, initial: InitialConditions
 ) -> tuple[FloatArray, FloatArray]:
-    """ε(t) (N,) and ∂ε/∂ζ (N, n) at the best initial state x(ζ) of the plant, which enters linearly.
+    """ε(t) (N,) and ∂ε/∂ζ (N, n) of a `fitted_record` at the best initial state and level x(ζ), which enter linearly.
 
         ε(ζ) = ε₀(ζ) + Φ(ζ) x,   x(ζ) = −Φ⁺ε₀,   J = (I − ΦΦ⁺) ∂ε/∂ζ
 
+    Φ holds −(q^i/(H A)) δ for each state i and, where the levels were not stated, −H⁻¹ 1 for the level of the output.
     ε and Jᵀε are the exact residual and half gradient of the cost minimised over x, and (JᵀJ)⁻¹ is the block of ζ in
     the covariance of (ζ, x), so x needs no place among the parameters. With "zero" the record starts from rest.
     """
-    if not free_parameters(structure, initial):
+    if not free_parameters(structure, initial, record):
         return prediction_errors(structure, zeta, record)
     q, r, start_errors = _projection(structure, zeta, record)
-    errors, jacobian = prediction_errors(structure, zeta, record, _best_state(q, r, start_errors))
+    state, level = _best_start(structure, q, r, start_errors)
+    lowered = replace(record, output=record.output - level)
+    errors, jacobian = prediction_errors(structure, zeta, lowered, state)
     jacobian = jacobian[:, : structure.size]
     return errors - q @ (q.T @ errors), jacobian - q @ (q.T @ jacobian)
 
@@ -41,7 +74,7 @@ def errors_only(
     structure: RationalStructure, zeta: FloatArray, record: TimeRecord, initial: InitialConditions
 ) -> FloatArray:
     """ε(t) (N,) of `errors_from` without the derivatives."""
-    if free_parameters(structure, initial):
+    if free_parameters(structure, initial, record):
         q, _, errors = _projection(structure, zeta, record)
         return errors - q @ (q.T @ errors)
     return _from_rest(structure, zeta, record)
@@ -50,15 +83,15 @@ def errors_only(
 def simulated_output(
     structure: RationalStructure, zeta: FloatArray, record: TimeRecord, initial: InitialConditions
 ) -> FloatArray:
-    """G u (N,) with the response to the best initial state added: the output without noise, as the model sees it."""
+    """G u (N,) with the response to the best initial state and the best level: the output without noise."""
     a, b, _, _, _ = structure.split(zeta)
     denominator = np.concatenate([[1.0], a])
     pulses = np.zeros(len(record))
     output = lfilter(np.concatenate([np.zeros(structure.n_k), b]), denominator, record.input)
-    if free_parameters(structure, initial):
+    if free_parameters(structure, initial, record):
         q, r, errors = _projection(structure, zeta, record)
-        pulses[: structure.n_a] = _best_state(q, r, errors)
-        output = output + lfilter([1.0], denominator, pulses)
+        pulses[: state_size(structure)], level = _best_start(structure, q, r, errors)
+        output = output + lfilter([1.0], denominator, pulses) + level
     return np.asarray(output)
 
 
@@ -69,18 +102,33 @@ def _from_rest(structure: RationalStructure, zeta: FloatArray, record: TimeRecor
     return np.asarray(lfilter(np.concatenate([[1.0], d]), np.concatenate([[1.0], c]), disturbance))
 
 
-def _best_state(q: FloatArray, r: FloatArray, errors: FloatArray) -> FloatArray:
-    return np.asarray(-np.linalg.lstsq(r, q.T @ errors, rcond=1e-13)[0], dtype=np.float64)
+def _best_start(
+    structure: RationalStructure, q: FloatArray, r: FloatArray, errors: FloatArray
+) -> tuple[FloatArray, float]:
+    """The initial state and the level of the output, which is zero where it was stated."""
+    start = -np.linalg.lstsq(r, q.T @ errors, rcond=1e-13)[0]
+    size = state_size(structure)
+    return start[:size], float(start[size:].sum())
+
+
+def level_errors(structure: RationalStructure, zeta: FloatArray, count: int) -> FloatArray:
+    """−H⁻¹ 1 (N,): what a unit of the output's level takes from the prediction errors of a record of N samples."""
+    _, _, _, c, d = structure.split(zeta)
+    whitening = np.concatenate([[1.0], d]), np.concatenate([[1.0], c])
+    return np.asarray(-lfilter(*whitening, np.ones(count)))
 
 
 def _projection(
     structure: RationalStructure, zeta: FloatArray, record: TimeRecord
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Orthonormal basis of the columns of Φ (N, n_a), the triangular factor with Φ = Q R, and the errors from rest."""
+    """Orthonormal basis of the columns of Φ, the triangular factor with Φ = Q R, and the errors from rest."""
     a, _, _, c, d = structure.split(zeta)
     pulse = np.zeros(len(record))
     pulse[0] = 1.0
     a, c, d = (np.concatenate([[1.0], part]) for part in (a, c, d))
     through = lfilter(d, np.convolve(c, a), pulse)
-    q, r = qr(-delayed(through, 0, structure.n_a), mode="economic", check_finite=False)
+    columns = -delayed(through, 0, state_size(structure))
+    if not record.level_known:
+        columns = np.column_stack([columns, level_errors(structure, zeta, len(record))])
+    q, r = qr(columns, mode="economic", check_finite=False)
     return np.asarray(q, dtype=np.float64), np.asarray(r, dtype=np.float64), _from_rest(structure, zeta, record)

@@ -86,6 +86,26 @@ class TimeRecord:
             return HeldInput(self.sample_time, self.hold)
         return None
 
+    @property
+    def level_known(self) -> bool:
+        """Whether the levels u_0 and y_0 that belong to the operating point were both stated."""
+        return self.channels.input.level is not None and self.channels.output.level is not None
+
+    def about_its_level(self) -> "TimeRecord":
+        """The record with u − u_0 and y − y_0; a level that was not stated is the mean value over the whole periods.
+
+        What is left is what a linear model speaks of. Where the levels were not stated the mean values say nothing
+        about the gain at ω = 0, which an estimator has to heed (`level_known`).
+        """
+        counted = len(self) if self.period is None else self.period_count * self.period
+        signals = {"input": self.channels.input, "output": self.channels.output}
+        moved = {}
+        for name, channel in signals.items():
+            values: FloatArray = getattr(self, name)
+            rest = values - (values[0] if channel.level is None else channel.level)
+            moved[name] = rest - rest[-counted:].mean() if channel.level is None else rest
+        return replace(self, **moved, channels=self.channels.at_level(0.0) if self.level_known else self.channels)
+
 
 def require_sampling(samples: int, sample_time: float, period: int | None) -> None:
     """Raises RangeError unless there are two samples or more, and sample time and period can be theirs."""

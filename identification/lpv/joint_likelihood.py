@@ -9,7 +9,7 @@ import numpy as np
 from identification.arrays import FloatArray
 from identification.errors import MisuseError, NotIdentifiableError
 from identification.estimates import LocalEstimate, LpvEstimate
-from identification.initial_conditions import InitialConditions
+from identification.initial_conditions import InitialConditions, fitted_record
 from identification.least_squares import LeastSquaresSolution, is_singular, levenberg_marquardt
 from identification.likelihood import require_same_sampling
 from identification.lpv.generalised_least_squares import GeneralisedLeastSquares
@@ -82,14 +82,15 @@ class JointLikelihood:
         residuals = JointResiduals(
             structure,
             transfer,
-            tuple(experiments),
+            tuple(self._fitted(structure, one) for one in experiments),
             prior,
             self.initial_conditions,
             common=self.noise_variance == "common",
             relative=self.unknown_variance == "relative",
         )
         residuals.require_enough()
-        starts = _starts(structure, dependence, experiments, local, prior, transfer)
+        about = [one.about_its_level() if isinstance(one, TimeRecord) else one for one in experiments]
+        starts = _starts(structure, dependence, about, local, prior, transfer)
         solution, variances = _fit(residuals, starts)
         outcome = _outcome(solution, residuals, variances)
         determined = outcome.status != "not_identifiable"
@@ -97,6 +98,9 @@ class JointLikelihood:
         model = Model(structure, dependence, solution.x, covariance, residuals.reported_variance(variances))
         tests = joint_tests(residuals, solution) if determined else ()
         return LpvEstimate(model, outcome, tests, tuple(local))
+
+    def _fitted(self, structure: RationalStructure, data: Measurement) -> Measurement:
+        return fitted_record(structure, data, self.initial_conditions)[1] if isinstance(data, TimeRecord) else data
 
     @classmethod
     def example(cls) -> "JointLikelihood":

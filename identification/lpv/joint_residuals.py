@@ -1,14 +1,14 @@
 """The residuals of all experiments as functions of θ, and the variances that make them white."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from identification.arrays import FloatArray
 from identification.errors import NotIdentifiableError, RangeError
-from identification.initial_conditions import InitialConditions, errors_from, free_parameters
+from identification.initial_conditions import InitialConditions, errors_from, free_parameters, level_errors
 from identification.least_squares import LeastSquaresSolution
 from identification.likelihood import prediction_errors, response_errors
 from identification.lpv.stacking import prior_rows
@@ -24,7 +24,8 @@ SETTLING = 40
 class JointResiduals:
     """Residuals of M experiments for T(p_m) (M, n, k), followed by the rows of a prior estimate.
 
-    Experiments of unknown variance belong to groups that share one; a group's name tells which.
+    Experiments of unknown variance belong to groups that share one; a group's name tells which. Records are those of
+    `identification.initial_conditions.fitted_record`, whose structure is `structure_of_records`.
     """
 
     structure: RationalStructure
@@ -34,6 +35,11 @@ class JointResiduals:
     initial: InitialConditions
     common: bool
     relative: bool
+
+    @cached_property
+    def structure_of_records(self) -> RationalStructure:
+        """The structure without the delay that the records have been moved by."""
+        return replace(self.structure, n_k=0) if self.initial == "estimate" else self.structure
 
     @cached_property
     def group_of(self) -> tuple[str | None, ...]:
@@ -57,10 +63,12 @@ class JointResiduals:
     @cached_property
     def counts(self) -> FloatArray:
         """How many values each experiment has, less those that its unknown initial state takes up, (M,)."""
-        free = free_parameters(self.structure, self.initial)
-        return np.array(
-            [len(e) - free if isinstance(e, TimeRecord) else real_count(e) for e in self.experiments], float
-        )
+        return np.array([self._count(e) for e in self.experiments], dtype=np.float64)
+
+    def _count(self, data: Measurement) -> int:
+        if isinstance(data, TimeRecord):
+            return len(data) - free_parameters(self.structure_of_records, self.initial, data)
+        return real_count(data)
 
     def require_enough(self) -> None:
         """Raises NotIdentifiableError when there are not more values than parameters."""
@@ -85,7 +93,7 @@ class JointResiduals:
         """r_m (R,) and ∂r_m/∂ζ (R, n) of one experiment, not weighted by unknown variances."""
         zeta, data = self.transfer[m] @ theta, self.experiments[m]
         if isinstance(data, TimeRecord):
-            return errors_from(self.structure, zeta, data, self.initial)
+            return errors_from(self.structure_of_records, zeta, data, self.initial)
         if data.variance is None and self.relative:
             return response_errors(self.structure, zeta, data, 1 / abs(data.response))
         return response_errors(self.structure, zeta, data)
@@ -113,13 +121,20 @@ class JointResiduals:
         """Derivatives as in `white` for a model with fast poles, without the responses to initial states, (R, k)."""
         jacobians = []
         for m, (transfer, data) in enumerate(zip(self.transfer, self.experiments, strict=True)):
-            if isinstance(data, TimeRecord) and free_parameters(self.structure, self.initial):
-                first = min(SETTLING + self.structure.n_k, len(data) // 2)
-                jacobian = prediction_errors(self.structure, transfer @ theta, data)[1][first:]
+            if isinstance(data, TimeRecord) and free_parameters(self.structure_of_records, self.initial, data):
+                jacobian = self._settled(transfer @ theta, data)
             else:
                 jacobian = self.local(m, theta)[1]
             jacobians.append(jacobian @ (transfer / self.deviation(m, variances)))
         return np.concatenate([*jacobians, self._prior[0]])
+
+    def _settled(self, zeta: FloatArray, data: TimeRecord) -> FloatArray:
+        first = min(SETTLING, len(data) // 2)
+        jacobian = prediction_errors(self.structure_of_records, zeta, data)[1][first:]
+        if data.level_known:
+            return jacobian
+        level = level_errors(self.structure_of_records, zeta, len(data))[first:]
+        return jacobian - np.outer(level, level @ jacobian / max(level @ level, np.finfo(float).tiny))
 
     def parts(self) -> list[slice]:
         """Where the rows of each experiment stand in the residuals."""

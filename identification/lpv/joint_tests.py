@@ -36,8 +36,8 @@ def joint_tests(residuals: JointResiduals, solution: LeastSquaresSolution) -> tu
         if isinstance(data, TimeRecord):
             zeta = residuals.transfer[m] @ solution.x
             covariance = residuals.transfer[m] @ solution.covariance @ residuals.transfer[m].T
-            each.append(_at(where, whiteness(residuals.structure, zeta, covariance, residual)))
-            each.append(_at(where, input_independence(residuals.structure, residual, jacobian, data.input)))
+            each.append(_at(where, whiteness(residuals.structure_of_records, zeta, covariance, residual)))
+            each.append(_at(where, input_independence(residuals.structure_of_records, residual, jacobian, data.input)))
         elif data.variance is not None:
             each.append(_fit_of_response(where, data, residuals.local(m, solution.x)[0], float(leverage[part].sum())))
     freedom = ranks - len(solution.x) + (0 if residuals.prior is None else len(solution.x))

@@ -12,6 +12,7 @@ from identification.initial_conditions import (
     InitialConditions,
     errors_from,
     errors_only,
+    fitted_record,
     free_parameters,
     simulated_output,
 )
@@ -36,8 +37,10 @@ class PredictionError:
         ζ̂ = arg min Σ_t ε²(t, ζ),   ε = H⁻¹(q, ζ) (y − G(q, ζ) u)
         σ̂_e² = Σ ε² / (N − n − n_x),   P_ζ = σ̂_e² (JᵀJ)⁻¹,   J = ∂ε/∂ζ        (the sample version of (7) and (8))
 
-    n_x = n_a values of the initial state are estimated along with ζ and marginalised when `initial_conditions` is
-    "estimate"; with "zero" the plant starts from rest and n_x = 0. The noise model starts from rest in both cases.
+    u and y are taken about the levels of the record, stated or not. n_x values are estimated along with ζ and
+    marginalised when `initial_conditions` is "estimate": the initial state (max(n_a, n_b), the first n_k samples of
+    the output being left out) and, where it was not stated, the level of the output; with "zero" the plant starts from
+    rest, n_x = 0, and only stated levels are taken off. The noise model starts from rest in both cases.
     The search starts from linear estimates, see `identification.lti.box_jenkins_start`, and stays among stable models.
     σ̂_e² does not fall below the rounding of the output.
     """
@@ -61,7 +64,10 @@ class PredictionError:
         shorter than the number of unknowns, or its input or output is zero throughout (RangeError: beyond 1e±60).
         """
         require_changing(record)
-        free = free_parameters(structure, self.initial_conditions)
+        require_same_sampling(structure, record)
+        full = structure
+        structure, record = fitted_record(full, record, self.initial_conditions)
+        free = free_parameters(structure, self.initial_conditions, record)
         _require_information(structure, record, free)
         scales = _rms(record.input), _rms(record.output)
         scaled = replace(record, input=record.input / scales[0], output=record.output / scales[1])
@@ -74,8 +80,10 @@ class PredictionError:
         covariance = variance * solution.covariance * np.outer(units, units)
         if outcome.status == "not_identifiable":
             covariance = np.full_like(covariance, np.inf)
-        model = LocalModel(structure, record.operating_point, solution.x * units, covariance, variance * scales[1] ** 2)
-        return LocalEstimate(model, outcome, _tests(solution, variance, structure, scaled), self._fit(model, record))
+        model = LocalModel(full, record.operating_point, solution.x * units, covariance, variance * scales[1] ** 2)
+        return LocalEstimate(
+            model, outcome, _tests(solution, variance, structure, scaled), self._fit(structure, model.zeta, record)
+        )
 
     def _search(self, structure: RationalStructure, record: TimeRecord, sufficient: bool) -> LeastSquaresSolution:
         first_estimates = waves(structure, record)
@@ -86,8 +94,8 @@ class PredictionError:
             first_estimates if sufficient else [next(first_estimates)[:1]],
         )
 
-    def _fit(self, model: LocalModel, record: TimeRecord) -> float:
-        simulated = simulated_output(model.structure, model.zeta, record, self.initial_conditions)
+    def _fit(self, structure: RationalStructure, zeta: FloatArray, record: TimeRecord) -> float:
+        simulated = simulated_output(structure, zeta, record, self.initial_conditions)
         spread = np.linalg.norm(record.output - record.output.mean()) or np.linalg.norm(record.output)
         return float(100 * (1 - np.linalg.norm(record.output - simulated) / spread))
 
@@ -98,7 +106,6 @@ class PredictionError:
 
 
 def _require_information(structure: RationalStructure, record: TimeRecord, free: int) -> None:
-    require_same_sampling(structure, record)
     unknowns = structure.size + free
     if len(record) <= unknowns + 1:
         raise NotIdentifiableError(
@@ -108,7 +115,11 @@ def _require_information(structure: RationalStructure, record: TimeRecord, free:
         )
     for name, signal in (("input", record.input), ("output", record.output)):
         if not np.any(signal):
-            raise NotIdentifiableError(f"the {name} is zero throughout, nothing can be learnt from it", name)
+            raise NotIdentifiableError(
+                f"the {name} stays at one value, nothing can be learnt from it; check the channel, excite the plant, or"
+                " state the operating levels if that value is the excitation",
+                name,
+            )
         if not LARGEST**-1 < float(np.abs(signal).max()) < LARGEST:
             raise RangeError(f"the {name} is too large or too small to be computed with; choose another unit", name)
 
@@ -116,11 +127,13 @@ def _require_information(structure: RationalStructure, record: TimeRecord, free:
 def _excited_directions(structure: RationalStructure, record: TimeRecord, initial: InitialConditions) -> int:
     """The rank of (u(t), …, u(t − n_a − n_b)): how many coefficients of G the input tells apart [Ljung1999, 13.2].
 
-    Before a record that starts from rest the input was zero; otherwise only what is within the record counts.
+    Before a record that starts from rest the input was zero; otherwise only what is within the record counts, and
+    where the levels were not stated only what is not constant.
     """
     past = delayed(record.input, structure.n_k, structure.n_plant)
     if initial == "estimate":
-        past = past[structure.n_k + structure.n_plant - 1 :]
+        past = past[structure.n_plant - 1 :]
+        past = past if record.level_known else past - past.mean(axis=0)
     values = np.linalg.svd(np.linalg.qr(past, mode="r"), compute_uv=False)
     return int(np.sum(values > 1e-9 * values.max(initial=np.finfo(float).tiny)))
 

@@ -22,7 +22,8 @@ class PeriodicAverage:
     σ̂_k² is |Ĝ|²(σ_Y²/|Y|² + σ_U²/|U|² − 2 Re σ_YU/(Y U*)) of the sample (co)variances, so noise on the input counts and
     an input repeated exactly is a special case. It has d = P − 1 degrees of freedom (σ̂² ~ σ² χ²_{2d}/2d). At ω = 0 and
     at the Nyquist frequency the response is real: there σ̂² is twice the variance of the real number, with d instead
-    of 2d real degrees of freedom; `real_lines=False` leaves those lines out.
+    of 2d real degrees of freedom; `real_lines=False` leaves those lines out. ω = 0 is used only where the operating
+    levels were stated: otherwise a mean value says nothing about the gain.
 
     Excited lines are those with |Ū_k| above `threshold` times the largest and above four of its standard deviations.
     With `drop_periods` None, leading periods, at most half of them, are dropped while the energy of their difference
@@ -37,7 +38,9 @@ class PeriodicAverage:
         int | None, "leading periods left out as transient; found from the record when not given"
     ] = None
     threshold: Annotated[float, "smallest amplitude of an excited line, as a fraction of the largest"] = 1e-3
-    real_lines: Annotated[bool, "keep the lines at zero and at the Nyquist frequency"] = True
+    real_lines: Annotated[
+        bool, "keep the lines at zero (where the levels were stated) and at the Nyquist frequency"
+    ] = True
     continuous_time: Annotated[bool, "the response is that of a continuous-time plant (band-limited measurement)"] = (
         False
     )
@@ -58,9 +61,10 @@ class PeriodicAverage:
 
         Raises MisuseError for a record without period, with fewer than two usable periods, or with a zero input.
         """
-        u, y = self.steady_spectra(record)
+        u, y = self.steady_spectra(record.about_its_level())
         count = len(u)
         lines = excited_lines(u, self.threshold)
+        lines[0] &= record.level_known
         omega = np.asarray(2 * np.pi * np.fft.rfftfreq(_period(record), record.sample_time), dtype=np.float64)
         real = real_lines(omega, record.sample_time)
         lines &= ~real | self.real_lines

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from identification.bases.polynomial import Polynomial
+from identification.channels import UNSTATED
 from identification.models.rational import RationalStructure, roots
 from identification.scheduling import ParameterDependence, ProductBasis, SchedulingVariable
 from identification.signals import TimeRecord
@@ -13,6 +14,7 @@ from identification.simulation import simulate
 EXAMPLE = RationalStructure(n_a=1, n_b=0, n_k=1, n_c=0, n_d=1, sample_time=1.0)
 THETA = np.array([-0.9, 0.1, 10.0, -1.0, -0.7, 0.08])
 P = SchedulingVariable("p", "V", 0.0, 8.0)
+AT_ZERO = UNSTATED.at_level(0.0)  # the levels of a simulated plant are known
 
 
 def polynomial_dependence(*degrees: int) -> ParameterDependence:
@@ -30,7 +32,7 @@ def example_record(p: float, generator, samples: int = 1000, power: float = 0.75
     """White input at an operating point of the example, from rest."""
     u = generator.standard_normal(samples) * np.sqrt(power)
     e = generator.standard_normal(samples) * np.sqrt(noise)
-    return TimeRecord(u, simulate(EXAMPLE, zeta_of_example(p), u, e), 1.0, (p,))
+    return TimeRecord(u, simulate(EXAMPLE, zeta_of_example(p), u, e), 1.0, (p,), channels=AT_ZERO)
 
 
 def steady_record(p: float, indices, generator, samples: int = 1000, noise: float = 0.5) -> TimeRecord:
@@ -40,7 +42,7 @@ def steady_record(p: float, indices, generator, samples: int = 1000, noise: floa
     zeta = zeta_of_example(p)
     e = generator.standard_normal(samples) * np.sqrt(noise)
     v = simulate(EXAMPLE, np.array([0.0, 0.0, zeta[2]]), u, e)
-    return TimeRecord(u, simulate(EXAMPLE, zeta, u, periodic=True) + v, 1.0, (p,))
+    return TimeRecord(u, simulate(EXAMPLE, zeta, u, periodic=True) + v, 1.0, (p,), channels=AT_ZERO)
 
 
 @dataclass(frozen=True, eq=False)

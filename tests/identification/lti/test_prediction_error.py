@@ -200,7 +200,12 @@ def test_pure_noise_model_and_pure_gain():
 
 @pytest.mark.parametrize(
     ("u", "y", "named"),
-    [(np.zeros(50), np.ones(50), "input"), (np.ones(50), np.zeros(50), "output"), (np.ones(5), np.ones(5), "samples")],
+    [
+        (np.zeros(50), np.arange(50.0), "input"),
+        (np.full(50, 0.1), np.arange(50.0), "operating levels"),
+        (np.arange(50.0), np.full(50, 5.3), "output"),
+        (np.ones(5), np.ones(5), "samples"),
+    ],
 )
 def test_records_without_information(u, y, named):
     with pytest.raises(NotIdentifiableError, match=named):

@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats
 
+from identification.channels import UNSTATED
 from identification.errors import MisuseError, RangeError
 from identification.models.rational import RationalStructure
 from identification.signals import FrequencyResponse, TimeRecord
@@ -17,6 +18,7 @@ from identification.spectral.periodic_average import PeriodicAverage
 PLANT = RationalStructure(2, 1, 1, sample_time=0.1), np.array([-1.5, 0.7, 1.0, 0.5])
 NOISE = RationalStructure(0, 0, n_c=1, n_d=1, sample_time=0.1), np.array([0.0, 0.3, -0.6])
 PERIOD = 64
+AT_ZERO = UNSTATED.at_level(0.0)
 
 
 def record(
@@ -30,7 +32,7 @@ def record(
     u = np.tile(generator.normal(size=period), periods)
     y = simulate(*PLANT, u, periodic=steady)
     y = y + simulate(*NOISE, u, noise * generator.normal(size=len(u)))
-    return TimeRecord(u + input_noise * generator.normal(size=len(u)), y, 0.1, (2.0,), period)
+    return TimeRecord(u + input_noise * generator.normal(size=len(u)), y, 0.1, (2.0,), period, AT_ZERO)
 
 
 def true(data: FrequencyResponse) -> np.ndarray:
@@ -74,7 +76,7 @@ def test_correlated_noise_on_input_and_output_cancels_in_the_variance():
     lines = 10 + lines
     response = PLANT[0].plant_response(PLANT[1], 2 * np.pi * np.arange(33) / 6.4)
     u, y = (np.fft.irfft(x, axis=1).ravel() for x in (lines, response * lines))
-    data = PeriodicAverage(drop_periods=0).estimate(TimeRecord(u, y, 0.1, (0.0,), PERIOD))
+    data = PeriodicAverage(drop_periods=0).estimate(TimeRecord(u, y, 0.1, (0.0,), PERIOD, AT_ZERO))
     assert np.all(data.variance < 1e-20)
     np.testing.assert_allclose(data.response, response, rtol=1e-9)
 
@@ -92,13 +94,13 @@ def test_only_excited_lines_are_given():
 
 def test_a_single_line_at_zero():
     y = 3.0 + 0.1 * np.random.default_rng(0).normal(size=80)
-    data = PeriodicAverage(drop_periods=0).estimate(TimeRecord(np.full(80, 2.0), y, 0.1, (0.0,), 8))
+    data = PeriodicAverage(drop_periods=0).estimate(TimeRecord(np.full(80, 2.0), y, 0.1, (0.0,), 8, AT_ZERO))
     assert data.frequencies == pytest.approx([0.0])
     means = y.reshape(10, 8).mean(axis=1)
     assert data.response == pytest.approx([means.mean() / 2])
     assert data.variance == pytest.approx([2 * np.var(means, ddof=1) / 10 / 4])
     with pytest.raises(MisuseError, match="no line"):
-        PeriodicAverage(real_lines=False).estimate(TimeRecord(np.full(80, 2.0), y, 0.1, (0.0,), 8))
+        PeriodicAverage(real_lines=False).estimate(TimeRecord(np.full(80, 2.0), y, 0.1, (0.0,), 8, AT_ZERO))
 
 
 def test_transients_are_dropped_and_steady_periods_kept():
