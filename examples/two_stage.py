@@ -6,6 +6,7 @@ OPENBLAS_NUM_THREADS=1 python examples/two_stage.py
 import numpy as np
 
 from identification.bases.polynomial import Polynomial
+from identification.channels import UNSTATED
 from identification.lpv.generalised_least_squares import GeneralisedLeastSquares
 from identification.lpv.joint_likelihood import JointLikelihood
 from identification.lti.prediction_error import PredictionError
@@ -32,7 +33,7 @@ generator = np.random.default_rng(1)
 def measure(point: tuple[float, ...], signal: np.ndarray) -> TimeRecord:
     zeta = dependence.matrix([point])[0] @ theta
     noise = generator.normal(0.0, np.sqrt(0.5), len(signal))
-    return TimeRecord(signal, simulate(structure, zeta, signal, noise), 1.0, point)
+    return TimeRecord(signal, simulate(structure, zeta, signal, noise), 1.0, point, channels=UNSTATED.at_level(0.0))
 
 
 def main() -> None:

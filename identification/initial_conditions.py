@@ -108,7 +108,7 @@ def _best_start(
     """The initial state and the level of the output, which is zero where it was stated."""
     start = -np.linalg.lstsq(r, q.T @ errors, rcond=1e-13)[0]
     size = state_size(structure)
-    return start[:size], float(start[size:].sum())
+    return np.asarray(start[:size], dtype=np.float64), float(start[size:].sum())
 
 
 def level_errors(structure: RationalStructure, zeta: FloatArray, count: int) -> FloatArray:

@@ -98,13 +98,20 @@ class TimeRecord:
         about the gain at ω = 0, which an estimator has to heed (`level_known`).
         """
         counted = len(self) if self.period is None else self.period_count * self.period
-        signals = {"input": self.channels.input, "output": self.channels.output}
-        moved = {}
-        for name, channel in signals.items():
-            values: FloatArray = getattr(self, name)
-            rest = values - (values[0] if channel.level is None else channel.level)
-            moved[name] = rest - rest[-counted:].mean() if channel.level is None else rest
-        return replace(self, **moved, channels=self.channels.at_level(0.0) if self.level_known else self.channels)
+        return replace(
+            self,
+            input=_about(self.input, self.channels.input.level, counted),
+            output=_about(self.output, self.channels.output.level, counted),
+            channels=self.channels.at_level(0.0) if self.level_known else self.channels,
+        )
+
+
+def _about(values: FloatArray, level: float | None, counted: int) -> FloatArray:
+    """Values less their level, or where it is None less the mean of the last `counted`; exactly zero where constant."""
+    if level is not None:
+        return values - level
+    rest = values - values[0]
+    return np.asarray(rest - rest[-counted:].mean())
 
 
 def require_sampling(samples: int, sample_time: float, period: int | None) -> None:

@@ -1,6 +1,7 @@
 """Experiments: documents and kept arrays to measurements."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -8,6 +9,7 @@ from numpy.typing import NDArray
 
 from app.conversion.extremes import within_doubles
 from app.conversion.fields import field_named
+from app.schemas.conditions import InputHold, RecordConditions
 from app.schemas.experiments import (
     Experiment,
     ExperimentKind,
@@ -17,11 +19,12 @@ from app.schemas.experiments import (
     TimeRecordRequest,
 )
 from app.store.arrays import ArrayStore
+from identification.channels import Channel, Channels
 from identification.comparison.batch import Batch
 from identification.comparison.gather import gather
-from identification.errors import ShapeError
+from identification.errors import MisuseError, ShapeError
 from identification.models.model import Model, require_matching
-from identification.signals import FrequencyResponse, Measurement, TimeRecord
+from identification.signals import FrequencyResponse, Hold, Measurement, TimeRecord
 
 Request = TimeRecordRequest | FrequencyResponseRequest | MatrixFrequencyResponseRequest
 
@@ -30,13 +33,14 @@ def requested_measurement(request: Request) -> Measurement:
     """The measurement in the body of a request; raises MisuseError when it is none."""
     point = tuple(request.operating_point)
     if isinstance(request, TimeRecordRequest):
-        return TimeRecord(
+        record = TimeRecord(
             np.array(request.input),
             np.array(request.output),
             request.sample_time_seconds,
             point,
             request.period_samples,
         )
+        return under(request, record)
     return plainest(
         FrequencyResponse(
             np.array(request.frequencies_rad_per_second),
@@ -46,6 +50,27 @@ def requested_measurement(request: Request) -> Measurement:
             None if request.variance is None else np.array(request.variance),
             request.variance_degrees_of_freedom,
         )
+    )
+
+
+HOLDS: dict[InputHold, Hold] = {"zeroOrder": "zero", "firstOrder": "first", "bandLimited": "band"}
+
+
+def under(conditions: RecordConditions, data: Measurement) -> Measurement:
+    """A measurement with what was stated of its channels; raises MisuseError when it is a frequency response."""
+    if not conditions.stated:
+        return data
+    if not isinstance(data, TimeRecord):
+        raise MisuseError(
+            "operating levels, hold and feedback are stated of time records, and this is a frequency response; leave"
+            " them out",
+            "record_conditions",
+        )
+    return replace(
+        data,
+        channels=Channels(Channel(level=conditions.input_level), Channel(level=conditions.output_level)),
+        hold=None if conditions.input_hold is None else HOLDS[conditions.input_hold],
+        feedback=conditions.feedback,
     )
 
 
@@ -79,7 +104,8 @@ def kept_measurement(experiment: Experiment, arrays: Mapping[str, NDArray[Any]])
     if experiment.kind == "timeRecord":
         assert experiment.sample_time_seconds is not None, "time records have a sample time"
         period = experiment.understood.period_samples
-        return TimeRecord(arrays["input"], arrays["output"], experiment.sample_time_seconds, point, period)
+        record = TimeRecord(arrays["input"], arrays["output"], experiment.sample_time_seconds, point, period)
+        return under(experiment, record)
     return FrequencyResponse(
         arrays["frequenciesRadPerSecond"],
         arrays["response"],

@@ -10,6 +10,7 @@ from pydantic import ValidationError
 from app.dependencies import ContainerDependency, Cursor, IdempotencyKey, Limit, ResourcesDependency
 from app.files.stored import Format
 from app.routers.downloads import file_answer, file_response
+from app.schemas.conditions import InputHold
 from app.schemas.experiments import (
     Experiment,
     ExperimentData,
@@ -71,6 +72,18 @@ def upload_experiment(
     logged: Annotated[
         str, Form(alias="loggedQuantities", description='quantities written down, as JSON: [{"name", "unit", "value"}]')
     ] = "[]",
+    input_level: Annotated[
+        float | None,
+        Form(alias="inputLevel", allow_inf_nan=False, description="value of the input at the operating point"),
+    ] = None,
+    output_level: Annotated[
+        float | None,
+        Form(alias="outputLevel", allow_inf_nan=False, description="value of the output when the input stands there"),
+    ] = None,
+    input_hold: Annotated[
+        InputHold | None, Form(alias="inputHold", description="how the input runs between its samples")
+    ] = None,
+    feedback: Annotated[bool, Form(description="whether a controller acted on the output while recording")] = False,
     key: IdempotencyKey = None,
 ) -> Job:
     """Bring in a file; its columns or arrays are found by their names, or as `columns` say.
@@ -93,6 +106,10 @@ def upload_experiment(
             "variableGroup": group,
             "columns": columns or [],
             "loggedQuantities": _json(logged),
+            "inputLevel": input_level,
+            "outputLevel": output_level,
+            "inputHold": input_hold,
+            "feedback": feedback,
         }
     )
     record = experiments.submit_file(container, stated, file.file.read(), file.filename or "", key)

@@ -7,6 +7,7 @@ from pydantic import AfterValidator, Field, RootModel, field_validator
 from app.arrays import ComplexMatrices, ComplexVector, Matrices, matrices_shape
 from app.files.column_choice import CHOICES
 from app.schemas.common import CamelModel, Double, Integer, Timestamp
+from app.schemas.conditions import RecordConditions
 from app.schemas.plants import LongText, Name, OperatingPoint, Positive, SampleTime, Text
 
 Identifier = Annotated[str, Field(min_length=1, max_length=64)]
@@ -50,7 +51,7 @@ class LocalExperimentFields(ExperimentFields):
     operating_point: OperatingPoint = Field(description="one value a scheduling variable, constant while measuring")
 
 
-class TimeRecordRequest(LocalExperimentFields):
+class TimeRecordRequest(LocalExperimentFields, RecordConditions):
     """Input and output over time."""
 
     kind: Literal["timeRecord"]
@@ -128,7 +129,7 @@ class ExperimentRequest(
     """A time record, a frequency response or a record along varying scheduling, told apart by `kind`."""
 
 
-class FileFields(ExperimentFields):
+class FileFields(ExperimentFields, RecordConditions):
     """What is stated beside an uploaded file; it goes before what the file says."""
 
     operating_point: OperatingPoint | None = Field(
@@ -209,7 +210,7 @@ class Understanding(CamelModel):
     warnings: list[str] = Field(description="what may spoil an identification")
 
 
-class Experiment(ExperimentFields):
+class Experiment(ExperimentFields, RecordConditions):
     """An experiment; its arrays are found under `/data` and `/file`."""
 
     id: str

@@ -85,6 +85,12 @@ def file_payload(plant: Plant, request: FileFields, content: bytes, name: str) -
         raise UnprocessableError.at("/file", "the file is empty")
     task = _task(file_format(name), name[:200], request.as_json(), plant)
     if request.operating_point is None:
+        if request.stated:
+            raise UnprocessableError.at(
+                "/operatingPoint",
+                "operating levels, hold and feedback are stated of records at an operating point held still; state it"
+                " or leave them out",
+            )
         task["plant"] = plant.as_json()
         columns = request.scheduling_columns
         if columns is not None and len(columns) != len(plant.scheduling_variables):

@@ -134,7 +134,7 @@ class JointResiduals:
         if data.level_known:
             return jacobian
         level = level_errors(self.structure_of_records, zeta, len(data))[first:]
-        return jacobian - np.outer(level, level @ jacobian / max(level @ level, np.finfo(float).tiny))
+        return jacobian - np.outer(level, level @ jacobian / max(float(level @ level), float(np.finfo(float).tiny)))
 
     def parts(self) -> list[slice]:
         """Where the rows of each experiment stand in the residuals."""

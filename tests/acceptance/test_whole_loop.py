@@ -44,11 +44,13 @@ def measured(api: Api, design: Json, signals: Json, generator: np.random.Generat
         point = signal["operatingPoint"][0]
         u = samples(api, signals, signal["index"])
         y = played(point, u, generator)
-        stated = {"plantId": design["plant"]["id"], "operatingPoint": [point], "designId": design["id"]}
+        levels = {"inputLevel": 0.0, "outputLevel": 0.0}
+        stated = {"plantId": design["plant"]["id"], "operatingPoint": [point], "designId": design["id"], **levels}
         columns = {"time": np.arange(len(u)) * 1.0, "input": u, "output": y}
         kind = ("csv", "npz", "mat", "json")[len(made) % 4]
         if kind == "json":
-            body = {**stated, "kind": "timeRecord", "sampleTimeSeconds": 1.0, "input": u.tolist(), "output": y.tolist()}
+            arrays = {"input": u.tolist(), "output": y.tolist()}
+            body = {**stated, "kind": "timeRecord", "sampleTimeSeconds": 1.0, **arrays}
             made.append(api.made("/experiments", body))
         else:
             write = {"csv": csv_file.write, "npz": npz_file.write, "mat": mat_writer.write}[kind]

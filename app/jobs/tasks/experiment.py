@@ -3,7 +3,7 @@
 from typing import Any
 
 from app import __version__
-from app.conversion.experiments import kind_of, plainest, require_channels
+from app.conversion.experiments import kind_of, plainest, require_channels, under
 from app.conversion.extremes import within_doubles
 from app.conversion.fields import field_named
 from app.conversion.inspection import understanding
@@ -17,6 +17,7 @@ from app.conversion.varying_records import (
 from app.files.measurement import Statements, measurement_arrays, read_measurement
 from app.files.varying_record import VaryingStatements, read_varying
 from app.jobs.task import TaskContext, TaskResult
+from app.schemas.conditions import RecordConditions
 from app.schemas.experiments import FileFields
 from app.schemas.plants import Plant
 from identification.signals import FrequencyResponse, Measurement, TimeRecord
@@ -24,7 +25,8 @@ from identification.varying.records import VaryingRecord
 
 KIND = "experiment"
 SIGNALS = {"input": "/inputs", "output": "/outputs", "scheduling": "/scheduling"}
-KEPT = {"plantId", "name", "description", "operatingPoint", "designId", "loggedQuantities"}
+CONDITIONS = {"inputLevel", "outputLevel", "inputHold", "feedback"}
+KEPT = {"plantId", "name", "description", "operatingPoint", "designId", "loggedQuantities", *CONDITIONS}
 
 
 def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
@@ -106,7 +108,8 @@ def _from_body(stated: dict[str, Any], arrays: dict[str, Any]) -> Measurement:
     point = tuple(stated["operatingPoint"])
     if stated["kind"] == "timeRecord":
         period = stated["periodSamples"]
-        return TimeRecord(arrays["input"], arrays["output"], stated["sampleTimeSeconds"], point, period)
+        record = TimeRecord(arrays["input"], arrays["output"], stated["sampleTimeSeconds"], point, period)
+        return under(RecordConditions.model_validate({one: stated[one] for one in CONDITIONS & set(stated)}), record)
     return FrequencyResponse(
         arrays["frequenciesRadPerSecond"],
         arrays["response"],
@@ -132,6 +135,6 @@ def _from_file(source: str, stated: FileFields, content: bytes, channels: tuple[
     )
     if isinstance(data, FrequencyResponse):
         data = plainest(data)
-    with field_named({"output": "/file", "response": "/file"}):
+    with field_named({"output": "/file", "response": "/file", "record_conditions": "/file"}):
         require_channels(data, channels)
-    return data
+        return under(stated, data)

@@ -20,6 +20,10 @@ export class FileCard {
     this.period = integerInput(null, { min: 2 });
     this.group = textInput();
     this.design = select([["", "none"], ...designs.map((one) => [one.id, one.request.name || one.id.slice(0, 8)])], "");
+    this.inputLevel = numberInput();
+    this.outputLevel = numberInput();
+    this.hold = select([["", "not known"], ["zeroOrder", "held (zero-order hold)"], ["firstOrder", "straight lines (first-order hold)"], ["bandLimited", "band limited"]], "");
+    this.feedback = select([["", "none"], ["true", "a controller acted"]], "");
     this.columns = [];
     this.progress = h("div", {});
     this.columnPlace = h("details", { "data-pointer": "/columns" }, h("summary", {}, "Which column is what"));
@@ -56,6 +60,10 @@ export class FileCard {
         field("sample time (s)", this.sampleTime, { hint: "when the file has no time", pointer: "/sampleTimeSeconds" }),
         field("samples in one period", this.period, { hint: "of a periodic input; empty: found or none", pointer: "/periodSamples" }),
         this.format === "mat" ? field("structure", this.group, { hint: "that holds the arrays, e.g. data.run1", pointer: "/variableGroup" }) : null,
+        field(labelled("input level", this.plant.input?.unit), this.inputLevel, { hint: "at the operating point; empty: its mean", pointer: "/inputLevel" }),
+        field(labelled("output level", this.plant.output?.unit), this.outputLevel, { hint: "when the input stands at its level; empty: its mean", pointer: "/outputLevel" }),
+        field("input between its samples", this.hold, { pointer: "/inputHold" }),
+        field("feedback", this.feedback, { hint: "while the record was made", pointer: "/feedback" }),
         field("design", this.design, { hint: "that this experiment carries out", pointer: "/designId" }))),
       json ? null : this.columnPlace,
       this.progress,
@@ -85,7 +93,8 @@ export class FileCard {
   #form() {
     const form = new FormData();
     const { operatingPoint, ...stated } = this.#stated();
-    const more = { sampleTimeSeconds: this.sampleTime.value, periodSamples: this.period.value, variableGroup: this.group.value.trim(), designId: this.design.value };
+    const more = { sampleTimeSeconds: this.sampleTime.value, periodSamples: this.period.value, variableGroup: this.group.value.trim(), designId: this.design.value,
+      inputLevel: this.inputLevel.value, outputLevel: this.outputLevel.value, inputHold: this.hold.value, feedback: this.feedback.value };
     for (const [name, value] of Object.entries({ ...stated, ...more })) if (value !== "") form.append(name, value);
     for (const value of operatingPoint) form.append("operatingPoint", value ?? "");
     for (const [meaning, input] of this.columns) if (input.value.trim()) form.append("columns", `${meaning}=${input.value.trim()}`);
