@@ -10,7 +10,7 @@ from identification.channels import Channel, Channels
 from identification.lpv.joint_likelihood import JointLikelihood
 from identification.lti.prediction_error import PredictionError
 from identification.lti.rational_fit import RationalFit
-from identification.models import RationalStructure
+from identification.models.rational import RationalStructure
 from identification.signals import TimeRecord
 from identification.spectral.periodic_average import PeriodicAverage
 from tests.support.plants import polynomial_dependence
