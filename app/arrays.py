@@ -73,6 +73,12 @@ def finite_or_none(value: float | None) -> float | None:
     return None if value is None or not np.isfinite(value) else float(value)
 
 
+def finite_parts(values: FloatArray) -> Any:
+    """The array as nested lists with null for what is not finite, or null when nothing is."""
+    known = np.isfinite(values)
+    return np.where(known, values, None).tolist() if known.any() else None  # type: ignore[call-overload]
+
+
 def finite_list_or_none(values: FloatArray) -> Any:
     """The array as nested lists, or null when a part of it is not finite."""
     return values.tolist() if np.isfinite(values).all() else None

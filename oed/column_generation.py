@@ -127,7 +127,7 @@ class _Bounds:
         self, blocks: Sequence[Block], weights: Sequence[FloatArray], targets: FloatArray, caps: FloatArray
     ) -> "_Bounds":
         """These weights, scaled until they meet all targets, if that takes no more energy and breaks no cap."""
-        scale = _needed_scale(_total(blocks, weights), targets)
+        scale = needed_scale(_total(blocks, weights), targets)
         energies = scale * _energies(blocks, weights, len(caps))
         if energies.sum() >= self.energy or np.any(energies > caps * (1 + CAP_SLACK)):
             return self
@@ -165,7 +165,7 @@ def _within_caps(
     pricing: Pricing, targets: FloatArray, caps: FloatArray, blocks: list[Block]
 ) -> list[Block] | Shortfall:
     """Blocks with which the targets can be met under the caps, or how much is missing at least."""
-    flat_energy = _needed_scale(_total(blocks, [np.eye(len(block.shapes)) for block in blocks]), targets) * len(caps)
+    flat_energy = needed_scale(_total(blocks, [np.eye(len(block.shapes)) for block in blocks]), targets) * len(caps)
     limits = np.minimum(caps, BOUNDLESS * flat_energy)
     for _ in range(100):
         master = solve_master(blocks, targets, limits, shortfall_only=True)
@@ -191,7 +191,7 @@ def _dual_value(prices: FloatArray, targets: FloatArray, worth: FloatArray, caps
     return float(np.max(scales * value - charges, initial=0.0))
 
 
-def _needed_scale(total: FloatArray, targets: FloatArray) -> float:
+def needed_scale(total: FloatArray, targets: FloatArray) -> float:
     """The least s with s · total ⪰ R_j for every j; infinite where the total cannot reach them."""
     values, vectors = np.linalg.eigh(total)
     root = vectors / np.sqrt(np.maximum(values, 1e-14 * max(values[-1], 1e-300)))

@@ -5,7 +5,7 @@ from typing import Literal
 
 import numpy as np
 
-from identification.arrays import FloatArray, IntArray
+from identification.arrays import FloatArray
 from identification.errors import MisuseError
 from identification.outcome import Outcome
 from identification.signals import OperatingPoint
@@ -14,6 +14,7 @@ from oed.column_generation import CertifiedSpectra, Progress, Shortfall, least_e
 from oed.decisions import Decision
 from oed.duration import required_samples, supplementary_points
 from oed.information import noise_information, require_stable
+from oed.pencil import covariance_of, shares
 from oed.problem import DesignProblem
 from oed.scaling import ScaledProblem, scaled
 from oed.spectra.family import Spectrum
@@ -22,6 +23,8 @@ from oed.statement import Statement, stated
 from oed.whole_periods import whole_periods
 
 COVERED = 1e-9
+MET = 1e-6
+WHOLE = 0.01
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,10 +54,11 @@ class Design:
     """The experiments to do, and how good they are certified to be.
 
     `total_energy` J is that of the experiments. `least_energy` is the same except where only whole periods can be
-    played, there that of parts of periods; `lower_bound` (dual): no spectra of the family at any of the allowed points
-    meet the targets with less; `gap` = 1 − lower_bound / least_energy. `samples` N_p is the duration asked for, or the
+    played, there that of parts of periods; `lower_bound`: nothing that the family can play at any of the allowed points
+    meets the targets with less; `gap` = 1 − lower_bound / total_energy. `samples` N_p is the duration asked for, or the
     next above `required_samples` of rule (18); `expected_covariance` P (k, k) of θ_G, the parameters of the effects in
-    the model, and θ_H, infinite where nothing is learnt; `decisions`: what can be decided, by number of the target.
+    the model, and θ_H, infinite for parameters that stay undetermined; `decisions`: what can be decided, by
+    number of the target.
     """
 
     outcome: Outcome
@@ -80,6 +84,7 @@ class _Found:
     lower_bound: float
     learnt: FloatArray
     binding: tuple[Binding, ...]
+    solver_gap: float
     iterations: int
 
 
@@ -101,11 +106,12 @@ def design(problem: DesignProblem, progress: Progress | None = None) -> Design:
 def designed(problem: DesignProblem, statement: Statement, progress: Progress | None = None) -> Design:
     """The design of a problem whose matrices are known."""
     k = statement.plant
-    targets, prior = statement.targets[:, :k, :k], statement.prior[:k, :k]
-    open_targets = _unmet(targets, prior)
-    if len(open_targets) == 0:
-        return _described(problem, statement, _Found((), 0.0, 0.0, 0.0, np.zeros((k, k)), (), 0))
-    problem_scaled = scaled(problem, statement, targets[open_targets] - prior)
+    nothing = np.zeros((k, k))
+    known = shares(statement.prior[:k, :k], nothing, statement.targets[:, :k, :k])
+    asking = np.flatnonzero(known > 1 + COVERED)
+    if len(asking) == 0:
+        return _described(problem, statement, _Found((), 0.0, 0.0, 0.0, nothing, (), 0.0, 0))
+    problem_scaled = scaled(problem, statement, asking)
     if isinstance(problem_scaled, Outcome):
         return _unreachable(problem, problem_scaled)
     solution, problem_scaled = _solved(problem_scaled, progress)
@@ -114,29 +120,22 @@ def designed(problem: DesignProblem, statement: Statement, progress: Progress | 
     if not solution.blocks:
         advice = "the solver found no spectra that meet the targets; relax the narrowest of the targets or the caps"
         return _unreachable(problem, Outcome("not_converged", advice, solution.iterations))
-    return _described(problem, statement, _found(problem_scaled, solution, open_targets))
+    return _described(problem, statement, _found(problem_scaled, solution))
 
 
-def _unmet(targets: FloatArray, prior: FloatArray) -> IntArray:
-    """The targets R_j that prior information does not cover, whatever the units of the parameters."""
-    size = np.sqrt(np.diagonal(targets, axis1=1, axis2=2) + np.diagonal(prior))
-    unit = 1 / np.where(size > 0, size, 1.0)
-    missing = (targets - prior) * unit[:, :, None] * unit[:, None, :]
-    return np.flatnonzero(np.linalg.eigvalsh(missing)[:, -1] > COVERED)
-
-
-def _found(problem: ScaledProblem, solution: CertifiedSpectra, open_targets: IntArray) -> _Found:
+def _found(problem: ScaledProblem, solution: CertifiedSpectra) -> _Found:
     played, pricing, unit = solution, problem.pricing, problem.unit
     if isinstance(pricing, MultisinePricing):
         in_unit = replace(pricing, energies=pricing.energies / unit)
-        played = whole_periods(in_unit, solution, problem.targets, problem.caps)
+        played = whole_periods(in_unit, solution, problem.targets, problem.caps, problem.tolerance)
     return _Found(
         _experiments(problem, played),
         unit * played.energy,
         unit * solution.energy,
-        unit * solution.lower_bound,
+        unit * played.lower_bound,
         problem.information(played.blocks, played.weights),
-        _binding(problem, solution, open_targets),
+        _binding(problem, solution),
+        max(solution.gap, 0.0),
         solution.iterations,
     )
 
@@ -163,17 +162,14 @@ def _experiments(problem: ScaledProblem, solution: CertifiedSpectra) -> tuple[De
     return tuple(experiments)
 
 
-def _binding(problem: ScaledProblem, solution: CertifiedSpectra, open_targets: IntArray) -> tuple[Binding, ...]:
+def _binding(problem: ScaledProblem, solution: CertifiedSpectra) -> tuple[Binding, ...]:
     by_target = np.zeros(len(problem.original.targets))
-    numbers = {int(j): n for n, j in enumerate(open_targets)}
-    whole = problem.basis.shape[0]
-    inverse = np.linalg.inv(problem.basis)
+    numbers = {int(j): n for n, j in enumerate(problem.asking)}
     for target, j, rows in problem.statement.parts:
         if j in numbers:
-            here = slice(rows.start, min(rows.stop, whole))
-            asked = (inverse.T @ problem.targets[numbers[j]] @ inverse)[here, here]
-            price = (problem.basis @ solution.prices[numbers[j]] @ problem.basis.T)[here, here]
-            by_target[target] += float(np.sum(asked * price)) / solution.energy
+            here = np.ix_(inside := problem.inside(rows), inside)
+            worth = np.sum(problem.targets[numbers[j]][here] * solution.prices[numbers[j]][here])
+            by_target[target] += float(worth) / solution.energy
     targets = [Binding("target", int(i), float(by_target[i])) for i in np.flatnonzero(by_target > 1e-4)]
     places = problem.pricing.places
     caps = [
@@ -185,21 +181,24 @@ def _binding(problem: ScaledProblem, solution: CertifiedSpectra, open_targets: I
 
 def _described(problem: DesignProblem, statement: Statement, found: _Found) -> Design:
     k = statement.plant
-    gap = 1 - found.lower_bound / found.least_energy if found.least_energy > 0 else 0.0
+    gap = _gap(found.lower_bound, found.energy)
     points = np.array([one.operating_point for one in found.experiments]).reshape(-1, problem.points.shape[1])
     per_sample = noise_information(problem.model, points)
-    noise_targets = statement.targets[:, k:, k:] - statement.prior[k:, k:]
-    needed = required_samples(per_sample, noise_targets)
+    noise_targets, noise_prior = statement.targets[:, k:, k:], statement.prior[k:, k:]
+    needed = required_samples(per_sample, noise_targets, noise_prior)
     samples = max(problem.samples, int(np.floor(needed)) + 1) if np.isfinite(needed) else problem.samples
-    information = statement.prior.copy()
-    information[:k, :k] += found.learnt
+    learnt = np.zeros_like(statement.prior)
+    learnt[:k, :k] = found.learnt
     lengths = np.array([_length(one.spectrum, samples) for one in found.experiments])
-    information[k:, k:] += np.tensordot(lengths, per_sample, axes=1)
+    learnt[k:, k:] = np.tensordot(lengths, per_sample, axes=1)
     own = np.ix_(statement.own, statement.own)
+    if np.isfinite(needed):
+        outcome = _held(statement, learnt, _outcome(problem, found))
+    else:
+        known = noise_prior + per_sample.sum(axis=0)
+        outcome = _noise_undetermined(problem, known, noise_targets)
     return Design(
-        _too_short(_outcome(problem, gap, found.iterations), information[k:, k:], statement.targets[:, k:, k:])
-        if np.isfinite(needed)
-        else _noise_undetermined(problem, per_sample.sum(axis=0), noise_targets),
+        outcome,
         found.experiments,
         float(found.energy),
         float(found.least_energy),
@@ -207,9 +206,9 @@ def _described(problem: DesignProblem, statement: Statement, found: _Found) -> D
         float(gap),
         samples,
         needed,
-        _covariance(information[own], statement.subject.hypotheses[0].size),
+        covariance_of(statement.prior[own], learnt[own]),
         found.binding,
-        statement.decisions(information),
+        statement.decisions(statement.prior + learnt),
     )
 
 
@@ -217,29 +216,21 @@ def _length(spectrum: Spectrum, samples: int) -> int:
     return spectrum.periods * spectrum.samples if isinstance(spectrum, MultisineSpectrum) else samples
 
 
-def _too_short(outcome: Outcome, information: FloatArray, targets: FloatArray) -> Outcome:
-    """The outcome, unless so many whole periods tell too little about the noise model."""
-    slack = np.linalg.eigvalsh(information - targets)
-    if slack.size == 0 or np.all(slack[:, 0] >= -1e-9 * np.trace(information)):
-        return outcome
-    advice = "the designed periods are too short for the noise model; record without input as well"
-    return Outcome("infeasible", advice, outcome.iterations)
-
-
-def _covariance(information: FloatArray, k: int) -> FloatArray:
-    """The inverse, block by block where the whole is singular; infinite for a block that nothing is known about."""
-    scale = np.sqrt(np.maximum(np.diagonal(information), 1e-300))
-    correlation = information / np.outer(scale, scale)
-    covariance = np.full_like(information, np.inf)
-    for part in (slice(None), slice(None, k), slice(k, None)):
-        block = correlation[part, part]
-        if block.size and np.linalg.eigvalsh(block)[0] > 1e-14:
-            covariance[part, part] = np.linalg.inv(block) / np.outer(scale[part], scale[part])
-            if part == slice(None):
-                return covariance
-    if k < len(information):
-        covariance[:k, k:] = covariance[k:, :k] = 0.0
-    return covariance
+def _held(statement: Statement, learnt: FloatArray, outcome: Outcome) -> Outcome:
+    """The outcome, unless a target is not met by what the experiments tell in all."""
+    plant, noise = (slice(None, statement.plant),) * 2, (slice(statement.plant, None),) * 2
+    if np.any(shares(statement.prior[noise], learnt[noise], statement.targets[:, *noise]) > 1 + MET):
+        advice = "the designed periods are too short for the noise model; record without input as well"
+        return Outcome("infeasible", advice, outcome.iterations)
+    missed = np.flatnonzero(shares(statement.prior[plant], learnt[plant], statement.targets[:, *plant]) > 1 + MET)
+    if len(missed):
+        number = next(target for target, j, _ in statement.parts if j in missed)
+        advice = (
+            f"the experiments found do not meet target {number + 1}: it asks for something that they hardly tell"
+            " anything about; allow more operating points or frequencies, or relax it"
+        )
+        return Outcome("not_converged", advice, outcome.iterations)
+    return outcome
 
 
 def _noise_undetermined(problem: DesignProblem, known: FloatArray, targets: FloatArray) -> Outcome:
@@ -249,21 +240,39 @@ def _noise_undetermined(problem: DesignProblem, known: FloatArray, targets: Floa
     return Outcome("infeasible", f"the designed experiments cannot determine the noise model: {remedy}")
 
 
-def _outcome(problem: DesignProblem, gap: float, iterations: int) -> Outcome:
-    if gap > problem.tolerance:
-        advice = f"a gap of {gap:.1e} remains; the experiments meet the targets, but could take that much less energy"
-        return Outcome("not_converged", advice, iterations)
-    return Outcome("converged", "", iterations)
+def _outcome(problem: DesignProblem, found: _Found) -> Outcome:
+    if found.solver_gap > problem.tolerance:
+        advice = (
+            f"a gap of {found.solver_gap:.1e} remains; the experiments meet the targets, but could take that much less"
+            " energy"
+        )
+        return Outcome("not_converged", advice, found.iterations)
+    gap, advice = _gap(found.lower_bound, found.energy), ""
+    if gap > max(WHOLE, problem.tolerance):
+        advice = (
+            f"only whole periods can be played: other numbers of them might take up to {100 * gap:.2g} % less energy"
+        )
+    return Outcome("converged", advice, found.iterations)
+
+
+def _gap(lower_bound: float, energy: float) -> float:
+    return max(1 - lower_bound / energy, 0.0) if energy > 0 else 0.0
 
 
 def _shortfall_advice(shortfall: Shortfall) -> Outcome:
     share = 1 - shortfall.least
-    looser = f"relax all standard deviations by a factor {share**-0.5:.3g}, or " if share > 0 else ""
+    looser = f"relax all standard deviations by a factor {_rounded_up(share**-0.5):g}, or " if share > 0 else ""
     return Outcome(
         "infeasible",
         f"under the energy caps at most {100 * share:.3g} % of the information asked for can be reached: {looser}raise"
         " the caps, allow more operating points, samples or levels, or use prior experiments",
     )
+
+
+def _rounded_up(factor: float) -> float:
+    """Three significant digits of a factor above one, and more than one."""
+    step = 10.0 ** (np.floor(np.log10(factor)) - 2)
+    return max(float(np.ceil(factor / step - 1e-9) * step), 1.001)
 
 
 def _unreachable(problem: DesignProblem, outcome: Outcome) -> Design:

@@ -13,6 +13,8 @@ from identification.models.model import Model
 from oed.decisions import Demand
 from oed.spectra.family import SpectrumFamily
 
+SYMMETRIC = 1e-9
+
 
 class AccuracyTarget(Protocol):
     """How accurately θ is to be known; effects in the model are estimated with it."""
@@ -71,6 +73,12 @@ class DesignProblem:
             raise RangeError(f"the number of samples is {self.samples}; it must be positive", "samples")
         if not 0 < self.tolerance < 1:
             raise RangeError(f"the tolerance is {self.tolerance}; choose it between 0 and 1", "tolerance")
+        if not (np.isfinite(self.model.noise_variance) and self.model.noise_variance > 0):
+            raise RangeError(
+                f"the noise variance is {self.model.noise_variance}; without noise any experiment would be accurate"
+                " enough, state how large it is",
+                "noise_variance",
+            )
         self._check_caps()
         self._check_prior()
         self._check_band()
@@ -112,11 +120,16 @@ class DesignProblem:
         if self.prior_experiments:
             raise MisuseError("prior information and prior experiments would count twice", "prior_information")
         prior, k = finite_floats(self.prior_information, "prior_information"), self.size
-        object.__setattr__(self, "prior_information", prior)
+        field = "prior_information"
         if prior.shape != (k, k):
-            raise ShapeError(f"the prior information has shape {prior.shape}, it must be {(k, k)}", "prior_information")
-        if np.linalg.eigvalsh(prior)[0] < -1e-9 * abs(prior).max():
-            raise RangeError("the prior information is not positive semidefinite", "prior_information")
+            raise ShapeError(f"the prior information has shape {prior.shape}, it must be {(k, k)}", field)
+        size = np.sqrt(np.maximum(np.diagonal(prior), 0.0))
+        scale = np.outer(*(np.where(size > 0, size, 1.0),) * 2)
+        if np.any(abs(prior - prior.T) > SYMMETRIC * scale):
+            raise RangeError("the prior information is not symmetric; give the inverse of a covariance", field)
+        if np.linalg.eigvalsh((prior + prior.T) / 2 / scale)[0] < -SYMMETRIC:
+            raise RangeError("the prior information is not positive semidefinite", field)
+        object.__setattr__(self, field, (prior + prior.T) / 2)
 
     def _check_band(self) -> None:
         if self.model.structure.sample_time is None and not (self.sample_time and self.sample_time > 0):

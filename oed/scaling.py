@@ -6,9 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import block_diag
 
-from identification.arrays import FloatArray
+from identification.arrays import BoolArray, FloatArray, IntArray
 from identification.outcome import Outcome
 from oed.hypothesis import Hypothesis
+from oed.pencil import Pencil
 from oed.problem import DesignProblem
 from oed.spectra.family import Block, Pricing
 from oed.statement import Statement
@@ -16,10 +17,11 @@ from oed.statement import Statement
 
 @dataclass(frozen=True, eq=False)
 class ScaledProblem:
-    """The problem for the parameters basis⁻¹ (θ_G, …) of all hypotheses and energies in `unit`.
+    """The problem for x with θ = `basis` x (K, r), `coordinates` · basis = I (r, r), and energies in `unit`.
 
-    There the information of flat spectra of energy one, together with the prior, is the unit matrix, and the largest
-    eigenvalue of the targets is one.
+    There what flat spectra of energy one tell, together with the prior, is the unit matrix, and what the targets R_j
+    ask for beyond the prior, `targets` (J, r, r), is at most that. What no experiment tells anything about, and no
+    target asks for, is left out. `asking`: the numbers of the targets that the prior does not meet.
     """
 
     original: DesignProblem
@@ -27,8 +29,10 @@ class ScaledProblem:
     points: FloatArray
     pricing: Pricing
     targets: FloatArray
+    asking: IntArray
     caps: FloatArray
     basis: FloatArray
+    coordinates: FloatArray
     unit: float
 
     @property
@@ -38,9 +42,12 @@ class ScaledProblem:
 
     def information(self, blocks: Sequence[Block], weights: Sequence[FloatArray]) -> FloatArray:
         """What the spectra tell about the parameters themselves, (K, K)."""
-        inverse = np.linalg.inv(self.basis)
         total = np.sum([block.total(weight) for block, weight in zip(blocks, weights, strict=True)], axis=0)
-        return np.asarray(self.unit * inverse.T @ total @ inverse)
+        return np.asarray(self.unit * self.coordinates.T @ total @ self.coordinates)
+
+    def inside(self, rows: slice) -> BoolArray:
+        """Which coordinates (r,) belong to parameters in these rows of θ."""
+        return np.asarray(np.any(self.basis[rows] != 0, axis=0))
 
     def priced(self, points: FloatArray) -> Pricing:
         """The family of the problem at other operating points (M, s), in the same units."""
@@ -48,46 +55,40 @@ class ScaledProblem:
         return problem.family.pricing(subject, points, problem.band, problem.step).transformed(self.basis)
 
 
-def scaled(problem: DesignProblem, statement: Statement, targets: FloatArray) -> ScaledProblem | Outcome:
-    """The problem in good units for targets R_j (J, K, K), less what prior information covers already.
+def scaled(problem: DesignProblem, statement: Statement, asking: IntArray) -> ScaledProblem | Outcome:
+    """The problem in good units for the targets `asking`, less what prior information covers already.
 
-    An Outcome with advice when the operating points and frequencies cannot determine the parameters of a hypothesis,
-    whatever the energy.
+    An Outcome with advice when the operating points and frequencies tell nothing, whatever the energy, about something
+    that a target asks for.
     """
     pricing = statement.pricing.within(problem.limits, problem.samples)
     flat = np.sum([block.information[0, 0] for block in pricing.flat()], axis=0)
-    bases = []
+    k = statement.plant
+    targets, pencils, unit = statement.targets[asking, :k, :k], [], 0.0
     for one, rows in zip(statement.subject.hypotheses, statement.subject.slices, strict=True):
-        basis = _basis(flat[rows, rows], statement.prior[rows, rows])
-        if basis is None:
+        pencil, asked = Pencil.of(statement.prior[rows, rows], flat[rows, rows]), targets[:, rows, rows]
+        if pencil.unreached(asked).any():
             return _undetermined(problem, one)
-        bases.append(basis)
-    whole = np.asarray(block_diag(*bases))
-    matrices = whole.T @ targets @ whole
-    unit = float(np.linalg.eigvalsh(matrices)[:, -1].max())
+        enough = pencil.enough(asked)
+        if not np.isfinite(enough):
+            return _undetermined(problem, one)
+        pencils.append(pencil)
+        unit = max(unit, enough)
+    sizes = [np.sqrt((one.prior + unit * one.gain) / unit) for one in pencils]
+    basis = np.asarray(block_diag(*(one.basis / size for one, size in zip(pencils, sizes, strict=True))))
+    known = np.concatenate([one.prior / (one.prior + unit * one.gain) for one in pencils])
     return ScaledProblem(
         problem,
         statement,
         problem.points[pricing.places],
-        pricing.transformed(whole),
-        matrices / unit,
+        pricing.transformed(basis),
+        basis.T @ targets @ basis / unit - np.diag(known),
+        asking,
         pricing.limits(problem.limits, problem.samples) / unit,
-        whole,
+        basis,
+        np.asarray(block_diag(*(size[:, None] * one.coordinates for one, size in zip(pencils, sizes, strict=True)))),
         unit,
     )
-
-
-def _basis(flat: FloatArray, prior: FloatArray) -> FloatArray | None:
-    """Coordinates in which flat spectra and the prior tell the same about everything; None where they tell nothing."""
-    diagonal = np.sqrt(np.diagonal(flat))
-    if np.any(diagonal <= 0):
-        return None
-    known = prior / np.outer(diagonal, diagonal)
-    correlation = flat / np.outer(diagonal, diagonal)
-    values, vectors = np.linalg.eigh(correlation + known / max(abs(known).max(), 1.0))
-    if values[0] <= 1e-13 * values[-1]:
-        return None
-    return np.asarray(vectors / np.sqrt(values) / diagonal[:, None])
 
 
 def _undetermined(problem: DesignProblem, one: Hypothesis) -> Outcome:

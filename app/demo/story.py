@@ -77,7 +77,7 @@ class Story:
 
     def accuracy(self, model: ModelDocument) -> Accuracy:
         """Standard deviations of θ, asked, expected and reached, and the errors that were made."""
-        expected = np.array(self.designed.design.expected_standard_deviations)
+        expected = np.array(self.designed.design.expected_standard_deviations, dtype=np.float64)
         error = np.array(model.theta) - task.true_parameters()
         return Accuracy(task.PARAMETERS, task.ASKED, expected, np.array(model.standard_deviations), error)
 

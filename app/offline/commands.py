@@ -3,6 +3,8 @@
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import typer
+
 from app.conversion.plants import is_state_space
 from app.offline import results
 from app.offline.documents import checked, load, section
@@ -22,6 +24,7 @@ from app.services import designs, models, signals, state_space_models
 if TYPE_CHECKING:
     from app.report.chain.documents import Played
 
+INFEASIBLE = 3
 DESIGNED = (
     "Where to measure and with which signals, so that the accuracy asked for is reached with the least input energy;"
     " and the model that this was computed from."
@@ -51,7 +54,7 @@ def identify(file: Path, output: Path, report: Path | None = None) -> None:
 
 @explained
 def design(file: Path, output: Path, report: Path | None = None) -> None:
-    """Design the experiments of a request file, and make their signals when it asks for them."""
+    """Design the experiments of a request file, and make their signals when it asks for them; 3 is "infeasible"."""
     content = load(file)
     plant = plant_in(content)
     model = model_in(content, plant, file.parent)
@@ -62,11 +65,13 @@ def design(file: Path, output: Path, report: Path | None = None) -> None:
         made = Design.model_validate(stored(found.document, DESIGN_ID, plantId=PLANT_ID, jobId=None))
         results.write_design(output, made)
         played: tuple[Played, ...] = ()
-        if "signals" in content:
+        if "signals" in content and made.experiments:
             played = (_signals(place, made, checked(SignalsRequest, content["signals"] or {}, "/signals"), output),)
         if report is not None:
             chain = Loop(place, plant, ()).chain([model], [], [], (made,), played)
             results.write_report(report, chain, f"{plant.name}: the designed experiments", DESIGNED)
+    if made.outcome.status == "infeasible":
+        raise typer.Exit(INFEASIBLE)
 
 
 def _identification(

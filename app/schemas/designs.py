@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import Field
 
-from app.arrays import ComplexVector, Matrix, Vector
+from app.arrays import ComplexVector, Vector
 from app.schemas.common import CamelModel, Double, Integer, Timestamp
 from app.schemas.experiments import Identifier
 from app.schemas.families import AccuracyTarget, SpectrumFamily
@@ -207,15 +207,19 @@ class Design(CamelModel):
     experiments: list[DesignedExperimentDocument]
     total_energy: Double | None = Field(description="Σ u(t)² over all experiments; null when infeasible")
     least_energy: Double | None = Field(
-        default=None, description="the same, and for candidate multisines with parts of periods; what the gap refers to"
+        default=None, description="the same, and for candidate multisines with parts of periods"
     )
     lower_bound: Double | None = Field(description="no experiment at all within the request needs less energy")
-    gap: Double | None = Field(description="(leastEnergy − lowerBound)/leastEnergy")
+    gap: Double | None = Field(description="(totalEnergy − lowerBound)/totalEnergy, of what is played")
     samples: Integer = Field(description="samples of each local experiment, as many as the noise model needs")
     required_samples: Double | None = Field(description="least number of samples for the accuracy of the noise model")
     parameter_names: list[str] = Field(description="those of the effects in the model stand between those of G and H")
-    expected_covariance: Matrix | None = Field(description="of these parameters after the experiments")
-    expected_standard_deviations: Vector | None
+    expected_covariance: list[list[Double | None]] | None = Field(
+        description="of these parameters after the experiments; null for those that stay undetermined"
+    )
+    expected_standard_deviations: list[Double | None] | None = Field(
+        description="of these parameters after the experiments; null for those that stay undetermined"
+    )
     binding: list[BindingDocument]
     decisions: list[DecisionDocument] = Field(default_factory=list, description="of targets about effects")
 

@@ -15,6 +15,8 @@ from oed.realisation.minimax import polished
 DRAWN = 1_000_000  # samples computed for random starts, at most
 CLIPPED = 60_000  # samples kept in the starts that are clipped
 DESCENDED = 20_000  # samples kept in the starts that are descended
+MOST_BETWEEN = 2**24
+BETWEEN = 16  # points a sample on which the peak between samples is judged, at least
 FEW_LINES = 12  # up to this many free phases, random draws come close to the best, so they are polished as they are
 
 
@@ -62,6 +64,19 @@ def crest_factor(signal: ArrayLike, oversampling: int = 1) -> float:
     if not (np.isfinite(rms) and rms > 0.0):
         raise RangeError("signal: a crest factor needs finite samples that are not all zero", "signal")
     return float(np.abs(interpolated(u, oversampling)).max()) / rms
+
+
+def peak_between_samples(signal: FloatArray, finer_than: int = 1) -> float:
+    """What max |u| of the band-limited interpolation of one period (N,) does not exceed, within half a per cent of it.
+
+        max_t |u(t)| ≤ max_i |u(t_i)| / cos(π/2r),   t_i on r points a sample                         [EhlichZeller1964]
+
+    for trigonometric polynomials of degree N/2 at most. r is 16, and at least four times `finer_than`, the points a
+    sample on which phases were chosen: between those the peaks are highest. For periods of more than 2²⁰ samples r is
+    smaller, and what is said further above the peak.
+    """
+    grid = max(min(max(BETWEEN, 4 * finer_than), MOST_BETWEEN // len(signal)), 2 * finer_than, 4)
+    return float(np.abs(interpolated(signal, grid)).max()) / float(np.cos(np.pi / (2 * grid)))
 
 
 def interpolated(signal: FloatArray, oversampling: int) -> FloatArray:

@@ -8,11 +8,11 @@ from identification.arrays import FloatArray, IntArray
 from identification.errors import MisuseError, RangeError
 from oed.realisation.filtered_noise import filtered_noise
 from oed.realisation.lines import signal_line_energies
-from oed.realisation.multisine import crest_factor, interpolated, multisine
+from oed.realisation.multisine import crest_factor, multisine, peak_between_samples
 from oed.realisation.realised_signal import RealisedSignal
 
 LONGEST_NOISE = 4_000_000  # samples of noise in one record; a multisine repeats its period and may be longer
-INTERPOLATION = 4  # points a sample at which the peak between samples is looked for
+INTERPOLATION = 16  # points a sample at which the peak between samples is looked for
 
 Method = Literal["multisine", "filtered_noise"]
 
@@ -74,22 +74,21 @@ def realise(
 
     A design that is a signal already is played as it is, `periods` times; an amplitude limit can only refuse it.
     `oversampling` is that of `multisine`; above 1 the limit holds between the samples too, where the reconstruction
-    filter of the player fills them in. The same generator state gives the same signal. Raises RangeError for a sample
-    time or limit that is not positive, or fewer than one period or sample; MisuseError for noise that is asked to have
+    filter of the player fills them in: judged by `peak_between_samples` on a finer grid than the phases were chosen on.
+    The same generator state gives the same signal. Raises RangeError for a sample time or limit that is not positive,
+    or fewer than one period or sample; MisuseError for noise that is asked to have
     lines or periods; and what `multisine` and `filtered_noise` raise.
     """
     spectrum = experiment.spectrum if isinstance(experiment, Designed) else experiment
     _check(sample_time, periods, samples, amplitude_limit)
     random = np.random.default_rng(generator)
     if isinstance(spectrum, FixedSignal):
-        return _as_designed(spectrum, samples, sample_time, method, periods, amplitude_limit)
+        return _as_designed(spectrum, samples, sample_time, method, periods, amplitude_limit, oversampling)
     if method == "multisine":
         index, energy = spectrum.line_energies(samples, sample_time)
         period = multisine(index, energy, samples, random, oversampling=oversampling)
         needed = (
-            periods
-            if amplitude_limit is None
-            else max(periods, _shares(interpolated(period, oversampling), amplitude_limit))
+            periods if amplitude_limit is None else max(periods, _shares(_peak(period, oversampling), amplitude_limit))
         )
         signal, asked = period / np.sqrt(needed), periods * samples
     elif method == "filtered_noise":
@@ -116,13 +115,19 @@ def realise(
 
 
 def _as_designed(
-    spectrum: FixedSignal, samples: int, sample_time: float, method: Method, periods: int, limit: float | None
+    spectrum: FixedSignal,
+    samples: int,
+    sample_time: float,
+    method: Method,
+    periods: int,
+    limit: float | None,
+    oversampling: int,
 ) -> RealisedSignal:
     if method != "multisine":
         raise MisuseError("method: the design is a multisine of fixed phases; play it as one", "method")
     signal = spectrum.period()
     index, _ = spectrum.line_energies(samples, sample_time)
-    peak = float(np.abs(signal).max())
+    peak = _peak(signal, oversampling)
     if limit is not None and peak > limit:
         raise RangeError(
             f"amplitude_limit: the designed signal reaches {peak:g}; design with lower levels", "amplitude_limit"
@@ -156,9 +161,14 @@ def _check(sample_time: float, periods: int, samples: int, amplitude_limit: floa
         raise RangeError(f"amplitude_limit: {amplitude_limit} must be positive and finite, or None", "amplitude_limit")
 
 
-def _shares(signal: FloatArray, limit: float) -> int:
+def _peak(signal: FloatArray, oversampling: int) -> float:
+    """The peak that the limit is for: of the samples, or with oversampling of what a reconstruction filter makes."""
+    return float(np.abs(signal).max()) if oversampling == 1 else peak_between_samples(signal, oversampling)
+
+
+def _shares(peak: float, limit: float) -> int:
     """Among how many periods the energy of one is shared until its peak keeps the limit."""
-    return max(1, int(np.ceil((float(np.abs(signal).max()) / limit) ** 2 * (1.0 - 1e-12))))
+    return max(1, int(np.ceil((peak / limit) ** 2 * (1.0 - 1e-12))))
 
 
 def _noise(

@@ -49,13 +49,14 @@ class LineSpectrum:
 class LineSpectra:
     """Line spectra Φ(ω) = Σ_i E_i δ(ω − ω_i) on the lines ω_i = 2πi/(samples · T) of a periodic record.
 
-    The least energy of all spectra; few lines, so that a local experiment alone may not identify its local model
-    (then estimate θ jointly).
+    The lowest line is the first, i = 1, unless a `constant` is asked for. The least energy of all spectra; few lines,
+    so that a local experiment alone may not identify its local model (then estimate θ jointly).
     """
 
     kind: ClassVar[str] = "lines"
 
     samples: Annotated[int, "samples per period of the record whose lines may be used"]
+    constant: Annotated[bool, "the constant, line 0, may be used too; it shows nothing of the dynamics"] = False
 
     def __post_init__(self) -> None:
         if self.samples < 2:
@@ -83,7 +84,7 @@ class LineSpectra:
         return (response_batch(model, points, frequencies[:: 1 + len(frequencies) // MOST_REFERENCE]),)
 
     def _lines(self, band: tuple[float, float] | None, sample_time: float) -> tuple[IntArray, FloatArray]:
-        indices = np.arange(self.samples // 2 + 1)
+        indices = np.arange(0 if self.constant else 1, self.samples // 2 + 1)
         line_spacing = 2 * np.pi / (self.samples * sample_time)
         if band is not None:
             slack = 1e-9 * len(indices)
@@ -149,7 +150,8 @@ class LinePricing:
 
     def transformed(self, basis: FloatArray) -> "LinePricing":
         """The same for the parameters basis⁻¹ θ_G."""
-        return replace(self, sensitivities=self.sensitivities @ basis)
+        mask = np.sign(abs(basis.T) @ self.mask @ abs(basis))
+        return replace(self, sensitivities=self.sensitivities @ basis, mask=mask)
 
     def spectrum(self, blocks: Sequence[Block], weights: Sequence[FloatArray]) -> LineSpectrum:
         """The lines of blocks of one point, in the order of frequency."""

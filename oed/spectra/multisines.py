@@ -244,7 +244,7 @@ class MultisinePricing:
 
     def flat(self) -> list[Block]:
         """Every candidate."""
-        return [self._block(c) for c in range(len(self.energies))]
+        return [self.block(c) for c in range(len(self.energies))]
 
     def limits(self, caps: FloatArray, samples: int) -> FloatArray:
         """The energy (C,) of the most whole periods that the caps (M,) and the length of an experiment allow."""
@@ -271,11 +271,17 @@ class MultisinePricing:
         in_use = [block for block, weight in zip(blocks, weights, strict=True) if weight[0, 0] > 1e-9]
         known = {block.point for block in in_use}
         good = foremost(worth >= NEARLY * charges, worth - charges)
-        return Offer(worth, in_use + [self._block(c) for c in good.tolist() if c not in known])
+        return Offer(worth, in_use + [self.block(c) for c in good.tolist() if c not in known])
 
     def transformed(self, basis: FloatArray) -> "MultisinePricing":
         """The same for the parameters basis⁻¹ θ."""
         return replace(self, information=basis.T @ self.information @ basis)
+
+    def counts(self, blocks: Sequence[Block], weights: Sequence[FloatArray]) -> FloatArray:
+        """How many periods of every candidate the weights are, (C,)."""
+        counts = np.zeros(len(self.energies))
+        np.add.at(counts, [block.point for block in blocks], self.periods(blocks, weights))
+        return counts
 
     def periods(self, blocks: Sequence[Block], weights: Sequence[FloatArray]) -> FloatArray:
         """How many periods of the candidates the weights are, (blocks,)."""
@@ -288,5 +294,6 @@ class MultisinePricing:
         signal = self.signals[int(self.numbers[blocks[0].point])]
         return replace(signal, periods=int(np.ceil(count * (1 - 1e-9))))
 
-    def _block(self, candidate: int) -> Block:
+    def block(self, candidate: int) -> Block:
+        """A candidate by itself."""
         return Block(candidate, np.zeros((1, 1)), self.information[candidate][None, None])

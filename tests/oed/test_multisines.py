@@ -58,7 +58,7 @@ def test_agrees_with_the_programme_as_written(targets: tuple[object, ...], optio
     result = design(asked)
     assert 0 <= result.gap <= 1e-4
     assert result.least_energy == pytest.approx(as_written(asked), rel=1e-3)
-    assert result.lower_bound <= result.least_energy <= result.total_energy * (1 + 1e-9)
+    assert result.least_energy * (1 - 1e-4) <= result.lower_bound <= result.total_energy
     assert _periods(result).max() <= asked.samples // 128
 
 

@@ -29,7 +29,7 @@ PLANT: Json = {
 GRID: Json = {"kind": "gridAxes", "axes": [{"minimum": 0.0, "maximum": 8.0, "count": 17}]}
 BELOW_5: Json = {"kind": "gridAxes", "axes": [{"minimum": 0.0, "maximum": 4.5, "count": 10}]}
 BOX: Json = {"kind": "box", "minimum": [0.0], "maximum": [8.0]}
-LINES: Json = {"kind": "lines", "samples": 1000}
+LINES: Json = {"kind": "lines", "samples": 1000, "constant": True}
 
 
 def fir(degree: int) -> Json:

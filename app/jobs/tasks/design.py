@@ -8,7 +8,7 @@ import numpy as np
 from pydantic.alias_generators import to_camel
 
 from app import __version__
-from app.arrays import finite_list_or_none, finite_or_none
+from app.arrays import finite_or_none, finite_parts
 from app.conversion.designs import (
     candidate_points,
     decision_document,
@@ -21,7 +21,7 @@ from app.conversion.experiments import kept_batches
 from app.conversion.extensions import joint_names
 from app.conversion.extremes import within_doubles
 from app.conversion.fields import field_named
-from app.conversion.models import outcome_document, standard_deviations
+from app.conversion.models import outcome_document
 from app.conversion.spectra import curve, spectrum_document
 from app.jobs.task import TaskContext, TaskResult
 from app.schemas.designs import BindingDocument, Box, DesignedExperimentDocument, DesignRequest
@@ -143,8 +143,8 @@ def _document(payload: dict[str, Any], problem: DesignProblem, found: Design) ->
         "samples": found.samples,
         "requiredSamples": finite_or_none(found.required_samples),
         "parameterNames": _names(problem.model),
-        "expectedCovariance": finite_list_or_none(found.expected_covariance),
-        "expectedStandardDeviations": standard_deviations(found.expected_covariance),
+        "expectedCovariance": finite_parts(found.expected_covariance),
+        "expectedStandardDeviations": finite_parts(np.sqrt(np.diagonal(found.expected_covariance))),
         "binding": [_binding(problem, binding).as_json() for binding in found.binding],
         "decisions": [decision_document(number, one).as_json() for number, one in found.decisions],
     }

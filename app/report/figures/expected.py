@@ -11,7 +11,9 @@ SYMBOLS = ("line-ew-open", "circle-open", "circle")
 SIZES = (24, 11, 11)
 
 
-def expected_accuracy(names: Sequence[str], asked: Deviations, before: Deviations, after: Sequence[float]) -> Plot:
+def expected_accuracy(
+    names: Sequence[str], asked: Deviations, before: Deviations, after: Sequence[float | None]
+) -> Plot:
     """Standard deviations of the parameters: asked for, known before and expected after the experiments."""
     series = [("asked for", asked), ("before", before), ("after the experiments", after)]
     figure = new_figure(height=340)

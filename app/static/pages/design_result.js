@@ -44,7 +44,7 @@ function summary(described, design, model) {
     facts([quantity(design.totalEnergy, unit, 4), "input energy Σu² in total"], [quantity(design.lowerBound, unit, 4), "no experiments need less, certified"],
       [percent(design.gap, 2), "gap between the two"], [String(design.experiments.length), "operating points"],
       [`${design.samples}`, `samples at each, ${duration(design.samples * design.sampleTimeSeconds)}`], [exact(design.sampleTimeSeconds, "s"), "sample time"]),
-    design.outcome.status === "converged" ? null : message("warning", `${design.outcome.status.replaceAll("_", " ")}: ${design.outcome.advice}`),
+    design.outcome.advice ? message("warning", `${design.outcome.status.replaceAll("_", " ")}: ${design.outcome.advice}`) : null,
     h("h3", {}, "Asked for"), asked, from,
   ];
 }

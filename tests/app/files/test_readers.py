@@ -211,6 +211,15 @@ def test_mat_elements_cannot_be_deeper_than_they_claim() -> None:
         mat_file.read(mat_writer.HEADER + inner)
 
 
+def test_wav_says_what_full_scale_is() -> None:
+    signal = 3.25 * np.sin(np.arange(501))
+    content = wav_file.write(signal, 0.001)
+    start = content.index(b"ICMT") + 8
+    comment = content[start : content.index(b"\0", start)].decode("ascii")
+    scale = float(comment.split(" is ")[1].split()[0])
+    assert scale * wavfile.read(io.BytesIO(content))[1] == pytest.approx(signal, rel=1e-6, abs=1e-6)
+
+
 def test_wav_needs_a_whole_rate() -> None:
     with pytest.raises(RangeError, match="another format"):
         wav_file.write(np.ones(4), 0.3)

@@ -87,6 +87,22 @@ def test_with_oversampling_the_limit_holds_between_the_samples() -> None:
     assert plain.peak <= 0.3
 
 
+@pytest.mark.parametrize("oversampling", [2, 4, 8])
+@pytest.mark.parametrize("seed", range(3))
+def test_between_the_samples_no_limit_is_exceeded_however_coarse_the_grid_was(oversampling: int, seed: int) -> None:
+    """Summed as cosines at many instants of no grid in common with those that phases were chosen or judged on."""
+    index = np.arange(1 + seed, 24)
+    flat = LineSpectrum(np.asarray(2.0 * np.pi / (48 * TS) * index, dtype=np.float64), np.ones(len(index)), index, 48)
+    free = realise(flat, 48, TS, generator=seed, oversampling=oversampling)
+    limit = 0.71 * free.peak
+    played = realise(flat, 48, TS, generator=seed, oversampling=oversampling, amplitude_limit=limit)
+    lines = np.fft.rfft(played.signal) / 24
+    instants = np.random.default_rng(seed).uniform(0, 48, 40_000)
+    between = (lines[index] * np.exp(2j * np.pi * np.outer(instants, index) / 48)).real.sum(axis=1)
+    assert abs(between).max() <= limit
+    assert played.energy == pytest.approx(free.energy)
+
+
 def test_noise_has_the_energy_within_its_deviation() -> None:
     signal = realise(FIR, 4000, TS, generator=2, method="filtered_noise")
     assert abs(signal.energy - FIR.energy) < 4.0 * energy_deviation(FIR.coefficients, 4000)
