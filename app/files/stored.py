@@ -6,7 +6,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from app.files import csv_file, mat_writer, npz_file, wav_file
+from app.files import csv_writer, mat_writer, npz_writer, wav_file
 from app.files.channel_columns import taken_apart
 
 Format = Literal["csv", "npz", "mat"]
@@ -23,7 +23,7 @@ MEDIA_TYPES = {
 def arrays_file(arrays: Mapping[str, NDArray[Any]], file_format: Format) -> bytes:
     """Arrays of one length as a file; in csv complex ones and matrices are split, and numbers beside them repeated."""
     if file_format == "npz":
-        return npz_file.write(dict(arrays))
+        return npz_writer.write(dict(arrays))
     if file_format == "mat":
         return mat_writer.write(arrays)
     columns: dict[str, NDArray[Any]] = {}
@@ -37,7 +37,7 @@ def arrays_file(arrays: Mapping[str, NDArray[Any]], file_format: Format) -> byte
             columns |= {f"{name}Re": full.real, f"{name}Im": full.imag}
         else:
             columns[name] = full
-    return csv_file.write(columns)
+    return csv_writer.write(columns)
 
 
 def _of_matrices(array: NDArray[Any]) -> dict[str, NDArray[Any]]:

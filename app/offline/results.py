@@ -10,7 +10,7 @@ from pydantic import BaseModel
 from rich.console import Console
 from rich.table import Table
 
-from app.files import npz_file
+from app.files import npz_writer
 from app.files.stored import arrays_file
 from app.report.effect_text import amplitude
 from app.schemas.designs import Design
@@ -38,7 +38,7 @@ def write_model(folder: Path, model: Model, experiments: Sequence[Experiment]) -
         arrays |= _matrices(model.state_space)
     if model.covariance is not None:
         arrays["covariance"] = np.array(model.covariance)
-    (folder / "model.npz").write_bytes(npz_file.write(arrays))
+    (folder / "model.npz").write_bytes(npz_writer.write(arrays))
     for experiment in experiments:
         _write(folder, f"{experiment.id}.json", experiment)
     table = Table("parameter", "value", "standard deviation", title=f"identification {_status(model.outcome)}")
@@ -104,7 +104,7 @@ def write_comparison(folder: Path, compared: "Compared") -> None:
     """comparison.json, comparison.npz with the normalised residuals of each experiment."""
     found = compared.document
     _write(folder, "comparison.json", found)
-    (folder / "comparison.npz").write_bytes(npz_file.write(dict(compared.arrays)))
+    (folder / "comparison.npz").write_bytes(npz_writer.write(dict(compared.arrays)))
     fits = Table("experiment", "operating point", "data", "fit %", "after a refit %", title="comparison")
     for one in found.experiments:
         point = ", ".join(f"{value:g}" for value in one.operating_point or ()) or "varying"

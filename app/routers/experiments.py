@@ -28,7 +28,10 @@ router = APIRouter(prefix="/experiments", tags=["experiments"])
 Finite = Annotated[float, Form(allow_inf_nan=False)]
 Upload = Annotated[
     UploadFile,
-    File(description="a .csv with a header line, .npz or .mat (level 5) file", json_schema_extra={"format": "binary"}),
+    File(
+        description="a text with columns, .npz, .mat, or another kind of file that a reader takes",
+        json_schema_extra={"format": "binary"},
+    ),
 ]
 
 
@@ -69,6 +72,13 @@ def upload_experiment(
         str, Form(alias="variableGroup", description="structure of a mat file that holds the arrays, e.g. data.run1")
     ] = "",
     columns: Annotated[list[str] | None, Form(description="which column or array is what, e.g. input=force")] = None,
+    units: Annotated[list[str] | None, Form(description="units of columns, e.g. Frequency=Hz")] = None,
+    rows: Annotated[list[str] | None, Form(description="only the lines with these values, e.g. run=2")] = None,
+    operating_point_columns: Annotated[
+        list[str] | None,
+        Form(alias="operatingPointColumns", description="columns of the operating point; one experiment for each"),
+    ] = None,
+    averages: Annotated[int | None, Form(description="independent averages behind a coherence")] = None,
     logged: Annotated[
         str, Form(alias="loggedQuantities", description='quantities written down, as JSON: [{"name", "unit", "value"}]')
     ] = "[]",
@@ -86,10 +96,12 @@ def upload_experiment(
     feedback: Annotated[bool, Form(description="whether a controller acted on the output while recording")] = False,
     key: IdempotencyKey = None,
 ) -> Job:
-    """Bring in a file; its columns or arrays are found by their names, or as `columns` say.
+    """Bring in a file; its columns or arrays are found by their names and units, or as `columns` and `units` say.
 
-    A time record has input, output and time (or state sampleTimeSeconds). A frequency response has
-    frequenciesRadPerSecond (or frequencyHz), response (or responseRe and responseIm) and, where known, variance.
+    A time record has input, output and time (or state sampleTimeSeconds). A frequency response has frequencies with
+    their unit, complex values (or real and imaginary parts, or magnitude and phase) and, where known, their variance,
+    deviations, or coherence with `averages`. Values are converted to the units of the plant. A table with a column for
+    each scheduling variable gives one experiment for each operating point.
     A record along varying scheduling states no operatingPoint; it has u, y and p (or u1, u2, … and the names of the
     scheduling variables) and time.
     """
@@ -105,6 +117,10 @@ def upload_experiment(
             "periodSamples": period,
             "variableGroup": group,
             "columns": columns or [],
+            "units": units or [],
+            "rows": rows or [],
+            "operatingPointColumns": operating_point_columns,
+            "averages": averages,
             "loggedQuantities": _json(logged),
             "inputLevel": input_level,
             "outputLevel": output_level,

@@ -5,14 +5,15 @@ from typing import Annotated, Literal
 from pydantic import AfterValidator, Field, RootModel, field_validator
 
 from app.arrays import ComplexMatrices, ComplexVector, Matrices, matrices_shape
-from app.files.column_choice import CHOICES
+from app.files.roles import CHOICES
 from app.schemas.common import CamelModel, Double, Integer, Timestamp
 from app.schemas.conditions import RecordConditions
 from app.schemas.plants import LongText, Name, OperatingPoint, Positive, SampleTime, Text
 
 Identifier = Annotated[str, Field(min_length=1, max_length=64)]
 Values = list[Double]
-ColumnChoice = Annotated[str, Field(pattern=f"^({'|'.join(CHOICES)})=.{{1,200}}$")]
+ColumnChoice = Annotated[str, Field(pattern=f"^-?({'|'.join(CHOICES)})=.{{1,200}}$")]
+ColumnStatement = Annotated[str, Field(pattern="^.{1,200}=.{1,200}$")]
 ExperimentKind = Literal["timeRecord", "frequencyResponse", "matrixFrequencyResponse", "varyingRecord"]
 
 
@@ -147,9 +148,23 @@ class FileFields(ExperimentFields, RecordConditions):
     variable_group: Text = Field(
         default="", description="structure of a mat file that holds the arrays, e.g. data.run1"
     )
-    columns: Annotated[list[ColumnChoice], Field(max_length=len(CHOICES))] = Field(
+    columns: Annotated[list[ColumnChoice], Field(max_length=200)] = Field(
         default_factory=list,
-        description="which column or array is what, e.g. input=force; found by names where not said",
+        description="which column or array is what, e.g. input=force; with a minus, such as -responseIm=Zim, where it"
+        " holds the negative; found by names and units where not said",
+    )
+    units: Annotated[list[ColumnStatement], Field(max_length=200)] = Field(
+        default_factory=list, description="units of columns whose names do not say them, e.g. Frequency=Hz, phase=deg"
+    )
+    rows: Annotated[list[ColumnStatement], Field(max_length=10)] = Field(
+        default_factory=list, description="only the lines with these values, e.g. run=2, of tables with several"
+    )
+    operating_point_columns: Annotated[list[Name], Field(min_length=1, max_length=10)] | None = Field(
+        default=None,
+        description="columns that hold the operating point, one a scheduling variable; one experiment is made of each",
+    )
+    averages: Annotated[Integer, Field(ge=2)] | None = Field(
+        default=None, description="independent averages behind a coherence, which then becomes a variance"
     )
 
 
@@ -224,8 +239,13 @@ class Experiment(ExperimentFields, RecordConditions):
     sample_time_seconds: Double | None = Field(description="null for a frequency response in continuous time")
     variance_known: bool = Field(description="whether variances came with the frequency response")
     variance_degrees_of_freedom: Double | None = Field(description="of these variances; null when known exactly")
-    source: Literal["json", "csv", "npz", "mat"] = Field(description="how the data came")
+    source: str = Field(description="how the data came: json, or the kind of file")
     file_name: str | None = Field(default=None, description="name of the uploaded file")
+    columns: list[str] = Field(default_factory=list, description="what was stated of the columns of the file")
+    units: list[str] = Field(default_factory=list, description="what was stated of their units")
+    sibling_ids: list[str] = Field(
+        default_factory=list, description="further experiments made of the same file, one an operating point"
+    )
     understood: Understanding
 
     @property

@@ -1,7 +1,7 @@
 """Experiments: data that came in is kept as it came, and a job makes out what it is."""
 
 from collections.abc import Sequence
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +13,7 @@ from app.conversion.plants import channels, plant_dependence
 from app.conversion.varying_records import record_arrays, requested_record
 from app.errors import UnprocessableError
 from app.files.measurement import measurement_arrays
+from app.files.readers import endings, kind_of_file
 from app.jobs.records import JobRecord
 from app.schemas.experiments import Experiment, ExperimentList, ExperimentRequest, FileFields, VaryingRecordRequest
 from app.schemas.plants import Plant
@@ -83,8 +84,10 @@ def file_payload(plant: Plant, request: FileFields, content: bytes, name: str) -
     """What the task gets beside the hash of the file, and the file as an array of bytes."""
     if not content:
         raise UnprocessableError.at("/file", "the file is empty")
-    task = _task(file_format(name), name[:200], request.as_json(), plant)
-    if request.operating_point is None:
+    kind = file_kind(name, content)
+    task = _task(kind, name[:200], request.as_json(), plant)
+    _check_point_columns(request, plant)
+    if request.operating_point is None and request.operating_point_columns is None:
         if request.stated:
             raise UnprocessableError.at(
                 "/operatingPoint",
@@ -106,18 +109,40 @@ def file_payload(plant: Plant, request: FileFields, content: bytes, name: str) -
     return task, {"file": np.frombuffer(content, dtype=np.uint8)}
 
 
-def file_format(name: str) -> Literal["csv", "npz", "mat"]:
-    """The format of a file by the end of its name."""
-    for ending in ("csv", "npz", "mat"):
-        if name.lower().endswith(f".{ending}"):
-            return ending
-    if name.lower().endswith((".txt", ".tsv")):
-        return "csv"
-    raise UnprocessableError.at("/file", "the name of the file must end in .csv, .npz or .mat")
+def _check_point_columns(request: FileFields, plant: Plant) -> None:
+    names, wanted = request.operating_point_columns, len(plant.scheduling_variables)
+    if names is None:
+        return
+    if request.scheduling_columns is not None:
+        raise UnprocessableError.at("/operatingPointColumns", "the scheduling was held still or it varied; give one")
+    if len(names) != wanted:
+        raise UnprocessableError.at(
+            "/operatingPointColumns", f"{len(names)} columns are named, the plant has {wanted} variables"
+        )
+
+
+def file_kind(name: str, content: bytes) -> str:
+    """The kind of the reader for a file, by the end of its name and its first bytes."""
+    found = kind_of_file(name, content)
+    if found is None:
+        known = ", ".join(f".{ending}" for ending in endings())
+        raise UnprocessableError.at("/file", f"the name of the file must end in one of {known}")
+    return found
 
 
 def _task(source: str, file_name: str | None, stated: dict[str, Any], plant: Plant) -> dict[str, Any]:
-    return {"source": source, "fileName": file_name, "stated": stated, "channels": list(channels(plant))}
+    signals = {
+        "inputs": [one.as_json() for one in (*(plant.inputs or ()), plant.input) if one is not None],
+        "outputs": [one.as_json() for one in (*(plant.outputs or ()), plant.output) if one is not None],
+        "variables": [one.as_json() for one in plant.scheduling_variables],
+    }
+    return {
+        "source": source,
+        "fileName": file_name,
+        "stated": stated,
+        "channels": list(channels(plant)),
+        "signals": signals,
+    }
 
 
 def experiment_of(resource: Resource) -> Experiment:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.files import csv_file
+from app.files import csv_writer
 from benchmarks.wind_turbine_plant import PLANT
 from tests.support import paper, varying
 from tests.support.api import Api, JobFailedError, Json, pointers
@@ -256,7 +256,7 @@ FILES: dict[str, tuple[Callable[[Signals], dict[str, Any]], Json, str, str]] = {
 @pytest.mark.parametrize("name", FILES)
 def test_bad_files(api: Api, plant: Json, name: str) -> None:
     columns, stated, pointer, reason = FILES[name]
-    content = csv_file.write(columns(first(varying.turbine(), 240)))
+    content = csv_writer.write(columns(first(varying.turbine(), 240)))
     with pytest.raises(JobFailedError) as failure:
         api.uploaded("a.csv", content, plantId=plant["id"], sampleTimeSeconds=1.0, **stated)
     problem = failure.value.problem

@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 
-from app.files import csv_file, mat_writer, npz_file
+from app.files import csv_writer, mat_writer, npz_writer
 from benchmarks.wind_turbine_plant import PLANT
 from identification.affine_estimate import AffineEstimate
 from identification.outcome import Outcome
@@ -63,9 +63,9 @@ def test_files_hold_the_same(api: Api, plant: Json, records: list[str], file_for
 
 def test_columns_may_have_names_of_their_own(api: Api, plant: Json) -> None:
     u, y, p = (signal[:600, 0] for signal in varying.turbine())
-    named = csv_file.write({"time": np.arange(600.0), "Cosine": p, "input": u, "output": y})
-    stated = csv_file.write({"u": u, "y": y, "blade angle": p})
-    matrix = npz_file.write({"u": u[:, None], "y": y[:, None], "angle": p[:, None]})
+    named = csv_writer.write({"time": np.arange(600.0), "Cosine": p, "input": u, "output": y})
+    stated = csv_writer.write({"u": u, "y": y, "blade angle": p})
+    matrix = npz_writer.write({"u": u[:, None], "y": y[:, None], "angle": p[:, None]})
     row = mat_writer.write({"u": u[None], "y": y[None], "p": p[None]})
     columns = {"plantId": plant["id"], "sampleTimeSeconds": 1.0}
     found = [

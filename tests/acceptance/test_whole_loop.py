@@ -5,7 +5,7 @@ import io
 import numpy as np
 import pytest
 
-from app.files import csv_file, mat_writer, npz_file
+from app.files import csv_writer, mat_writer, npz_writer
 from identification.arrays import FloatArray
 from identification.models.rational import RationalStructure
 from identification.simulation import simulate
@@ -53,7 +53,7 @@ def measured(api: Api, design: Json, signals: Json, generator: np.random.Generat
             body = {**stated, "kind": "timeRecord", "sampleTimeSeconds": 1.0, **arrays}
             made.append(api.made("/experiments", body))
         else:
-            write = {"csv": csv_file.write, "npz": npz_file.write, "mat": mat_writer.write}[kind]
+            write = {"csv": csv_writer.write, "npz": npz_writer.write, "mat": mat_writer.write}[kind]
             made.append(api.uploaded(f"record.{kind}", write(columns), **stated))
         assert made[-1]["source"] == kind
     return made

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.files import csv_file, mat_writer, npz_file
+from app.files import csv_writer, mat_writer, npz_writer
 from tests.support.api import Api, Json
 from tests.support.browser import Visit
 from tests.support.paper import PLANT, played
@@ -58,11 +58,11 @@ def test_all_formats_are_dropped_and_read(here: Visit) -> None:
     drop(
         here,
         {
-            "one_at_1.csv": csv_file.write(record),
-            "two_at_2.npz": npz_file.write(record),
+            "one_at_1.csv": csv_writer.write(record),
+            "two_at_2.npz": npz_writer.write(record),
             "three_at_3.mat": mat_writer.write(record),
             "four_at_4.json": json.dumps(body).encode(),
-            "five_at_5.csv": csv_file.write(response),
+            "five_at_5.csv": csv_writer.write(response),
         },
     )
     here.page.get_by_role("button", name="Bring in all 5 files").click()
@@ -73,7 +73,7 @@ def test_all_formats_are_dropped_and_read(here: Visit) -> None:
 
 
 def test_columns_with_other_names_are_chosen(here: Visit) -> None:
-    content = csv_file.write(columns(names=("clock", "force", "way")))
+    content = csv_writer.write(columns(names=("clock", "force", "way")))
     drop(here, {"named_otherwise_at_2.csv": content})
     page = here.page
     for label, column in (("time (s)", "clock"), ("input", "force"), ("output", "way")):
@@ -101,7 +101,7 @@ def test_a_broken_file_shows_its_problem_at_the_field(here: Visit) -> None:
 @pytest.mark.parametrize(
     ("name", "content", "told"),
     [
-        ("cut.npz", npz_file.write(columns())[:200], "not a whole npz file"),
+        ("cut.npz", npz_writer.write(columns())[:200], "not a whole npz file"),
         ("none.mat", b"MATLAB" * 100, "no MATLAB file of level 5"),
         ("none.json", b"{not json", "the file is no JSON"),
         ("other.json", b'{"kind": "timeRecord"}', "please fill this in"),
@@ -121,7 +121,7 @@ def test_what_is_no_measurement_is_told_so(here: Visit, name: str, content: byte
 
 def test_a_record_is_seen_with_its_spectrum_and_what_was_understood(here: Visit, server: Server, plant: Json) -> None:
     stated = {"plantId": plant["id"], "operatingPoint": [3.0]}
-    experiment = Api(server.url).uploaded("seen.csv", csv_file.write(columns()), **stated)
+    experiment = Api(server.url).uploaded("seen.csv", csv_writer.write(columns()), **stated)
     page = here.open(f"/plants/{plant['id']}/experiments/{experiment['id']}")
     facts = page.locator(".facts").inner_text()
     assert "4 × 100 samples" in facts

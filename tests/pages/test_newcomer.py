@@ -6,14 +6,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.files import csv_file, mat_writer, npz_file
+from app.files import csv_writer, mat_writer, npz_writer
 from tests.support.browser import Visit
 from tests.support.hidden_plant import SAMPLE_TIME, HiddenPlant
 from tests.support.server import Server, running_server
 
 FITTED, HELD_OUT = [-1.0, -0.5, 0.0, 0.5, 1.0], [-0.7, 0.3]
 LEVELS = (20.0, 10.0)
-WRITERS = {"csv": csv_file.write, "npz": npz_file.write, "mat": mat_writer.write}
+WRITERS = {"csv": csv_writer.write, "npz": npz_writer.write, "mat": mat_writer.write}
 FIELDS = {
     "/name": "sprung mass",
     "/input/name": "force",

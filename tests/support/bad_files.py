@@ -7,7 +7,7 @@ import zipfile
 
 import numpy as np
 
-from app.files import mat_writer, npz_file
+from app.files import mat_writer, npz_writer
 
 GIBIBYTE = 1024**3
 
@@ -90,7 +90,7 @@ def mat_with_shape(rows: int) -> bytes:
     return bytes(content)
 
 
-_NPZ = npz_file.write(good_arrays())
+_NPZ = npz_writer.write(good_arrays())
 _MAT = mat_writer.write(good_arrays())
 
 BAD_FILES: dict[str, tuple[str, bytes]] = {
@@ -100,7 +100,7 @@ BAD_FILES: dict[str, tuple[str, bytes]] = {
     "csv without names": ("a.csv", b"1,2,3\n1,2,3\n"),
     "csv with not-a-number": ("a.csv", b"time,input,output\n0,1,2\n1,nan,3\n"),
     "csv with an infinity": ("a.csv", b"time,input,output\n0,1,2\n1,inf,3\n"),
-    "csv in latin-1": ("a.csv", "time,input,output,tempé\n0,1,2,3\n".encode("latin-1")),
+    "csv of a picture": ("a.csv", b"\x89PNG\r\n\x1a\n\x00\x01time,input,output\n0,1,2\n1,2,3\n"),
     "csv of zero bytes": ("a.csv", bytes(100)),
     "csv of one sample": ("a.csv", b"time,input,output\n0,1,2\n"),
     "csv of zeros": ("a.csv", b"time,input,output\n" + b"".join(b"%d,0,0\n" % i for i in range(60))),
@@ -116,12 +116,12 @@ BAD_FILES: dict[str, tuple[str, bytes]] = {
     "npz of a huge shape": ("a.npz", zipped({"input.npy": npy_header("(1000000000000,)") + bytes(8)})),
     "npz of a negative shape": ("a.npz", zipped({"input.npy": npy_header("(-1,)") + bytes(8)})),
     "npz with code in its header": ("a.npz", zipped({"input.npy": npy_header("__import__('os').getpid()")})),
-    "npz of words": ("a.npz", npz_file.write({"input": np.array(["a", "b"]), "output": np.array(["c", "d"])})),
+    "npz of words": ("a.npz", npz_writer.write({"input": np.array(["a", "b"]), "output": np.array(["c", "d"])})),
     "npz of different lengths": (
         "a.npz",
-        npz_file.write({"u": np.ones(5), "y": np.ones(6), "ts": np.ones(1)}),
+        npz_writer.write({"u": np.ones(5), "y": np.ones(6), "ts": np.ones(1)}),
     ),
-    "npz of matrices": ("a.npz", npz_file.write({"input": np.ones((5, 2)), "output": np.ones((5, 2))})),
+    "npz of matrices": ("a.npz", npz_writer.write({"input": np.ones((5, 2)), "output": np.ones((5, 2))})),
     "npz without arrays": ("a.npz", zipped({})),
     "mat that is none": ("a.mat", b"MATLAB" * 100),
     "mat of version 7.3": ("a.mat", b"\x89HDF\r\n\x1a\n" + bytes(600)),

@@ -10,17 +10,18 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.io import wavfile
 
-from app.files import csv_file, mat_file, mat_writer, npz_file, wav_file
+from app.files import csv_writer, mat_writer, npz_writer, wav_file
+from app.files.contents import FileError, from_arrays
 from app.files.measurement import Statements, measurement, read_measurement
+from app.files.readers.mat import MatlabFile
 from app.files.stored import arrays_file
-from app.files.table import FileError
 from identification.errors import MisuseError, RangeError
 from identification.signals import FrequencyResponse, TimeRecord
 from tests.support.bad_files import BAD_FILES, good_arrays
 
 POINT = Statements((1.0,))
 ARRAYS = good_arrays()
-WRITERS = {"csv": csv_file.write, "npz": npz_file.write, "mat": mat_writer.write}
+WRITERS = {"csv": csv_writer.write, "npz": npz_writer.write, "mat": mat_writer.write}
 
 
 def matlab(compressed: bool, **arrays: object) -> bytes:
@@ -50,7 +51,7 @@ def test_what_columns_are_can_be_said(kind: str) -> None:
 )
 def test_columns_that_are_not_there_are_refused(columns: tuple[str, ...], message: str) -> None:
     with pytest.raises(MisuseError, match=message) as refused:
-        read_measurement(csv_file.write(ARRAYS), "csv", Statements((1.0,), columns=columns))
+        read_measurement(csv_writer.write(ARRAYS), "csv", Statements((1.0,), columns=columns))
     assert refused.value.field == "/columns"
 
 
@@ -148,7 +149,7 @@ def test_what_is_written_is_read_by_other_programs() -> None:
     rate, samples = wavfile.read(io.BytesIO(wav_file.write(signal, 0.001)))
     assert rate == 1000
     np.testing.assert_allclose(2.0 * samples, signal, rtol=1e-7)
-    with np.load(io.BytesIO(npz_file.write(arrays)), allow_pickle=False) as archive:
+    with np.load(io.BytesIO(npz_writer.write(arrays)), allow_pickle=False) as archive:
         assert set(archive.files) == set(arrays)
 
 
@@ -169,11 +170,11 @@ def test_frequencies_in_hertz_become_radians() -> None:
 
 
 def test_what_is_stated_goes_before_the_file_but_not_against_it() -> None:
-    table = {"input": np.ones(4), "output": np.arange(4.0), "time": np.arange(4) * 0.1}
-    assert measurement(table, Statements((1.0,), sample_time=0.10001)).sample_time == 0.10001
+    table = from_arrays({"input": np.ones(4), "output": np.arange(4.0), "time": np.arange(4) * 0.1})
+    assert measurement(table, Statements((1.0,), sample_time=0.10001)).measurement.sample_time == 0.10001
     with pytest.raises(FileError, match=r"0\.2"):
         measurement(table, Statements((1.0,), sample_time=0.2))
-    without = {"input": np.ones(4), "output": np.arange(4.0)}
+    without = from_arrays({"input": np.ones(4), "output": np.arange(4.0)})
     with pytest.raises(FileError, match="sampleTimeSeconds"):
         measurement(without, POINT)
 
@@ -208,7 +209,7 @@ def test_mat_elements_cannot_be_deeper_than_they_claim() -> None:
     for _ in range(40):
         inner = struct.pack("<II", 14, len(inner)) + inner
     with pytest.raises(FileError):
-        mat_file.read(mat_writer.HEADER + inner)
+        MatlabFile.read(mat_writer.HEADER + inner)
 
 
 def test_wav_says_what_full_scale_is() -> None:

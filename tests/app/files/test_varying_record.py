@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from app.files import csv_file, mat_writer, npz_file
-from app.files.table import FileError
+from app.files import csv_writer, mat_writer, npz_writer
+from app.files.contents import FileError
 from app.files.varying_record import VaryingStatements, read_varying
 from identification.errors import RangeError
 from identification.scheduling import SchedulingVariable
@@ -13,7 +13,7 @@ VARIABLES = tuple(SchedulingVariable(name, "", -1.0, 1.0) for name in ("Wind spe
 STATED = VaryingStatements(VARIABLES, sample_time=0.5)
 G = np.random.default_rng(1)
 U, Y, P = G.standard_normal((30, 2)), G.standard_normal((30, 1)), G.uniform(-1, 1, (30, 2))
-WRITERS = {"csv": csv_file.write, "npz": npz_file.write, "mat": mat_writer.write}
+WRITERS = {"csv": csv_writer.write, "npz": npz_writer.write, "mat": mat_writer.write}
 
 
 def columns(**named: np.ndarray) -> dict[str, np.ndarray]:
@@ -25,7 +25,7 @@ def test_columns_by_number_or_by_the_names_of_the_variables(kind: str) -> None:
     by_number = columns(p2=P[:, 1], p1=P[:, 0])
     by_name = columns(load=P[:, 1], wind_speed=P[:, 0])
     for arrays in (by_number, by_name):
-        found = read_varying(WRITERS[kind](arrays), kind, STATED)
+        found = read_varying(WRITERS[kind](arrays), kind, STATED).record
         assert np.array_equal(found.input, U)
         assert np.array_equal(found.output, Y)
         assert np.array_equal(found.scheduling, P)
@@ -35,7 +35,7 @@ def test_columns_by_number_or_by_the_names_of_the_variables(kind: str) -> None:
 @pytest.mark.parametrize("kind", ["npz", "mat"])
 def test_arrays_may_hold_all_channels(kind: str) -> None:
     arrays = {"inputs": U, "output": Y, "scheduling": P, "time": 0.5 * np.arange(30.0), "period": np.array(10.0)}
-    found = read_varying(WRITERS[kind](arrays), kind, VaryingStatements(VARIABLES))
+    found = read_varying(WRITERS[kind](arrays), kind, VaryingStatements(VARIABLES)).record
     assert np.array_equal(found.input, U)
     assert np.array_equal(found.scheduling, P)
     assert (found.sample_time, found.period) == (0.5, 10)
@@ -43,7 +43,7 @@ def test_arrays_may_hold_all_channels(kind: str) -> None:
 
 def test_named_columns_go_first() -> None:
     arrays = columns(p1=0 * P[:, 0], p2=0 * P[:, 1], a=P[:, 0], b=P[:, 1])
-    found = read_varying(csv_file.write(arrays), "csv", VaryingStatements(VARIABLES, 0.5, columns=("a", "b")))
+    found = read_varying(csv_writer.write(arrays), "csv", VaryingStatements(VARIABLES, 0.5, columns=("a", "b"))).record
     assert np.array_equal(found.scheduling, P)
 
 
@@ -59,11 +59,11 @@ def test_named_columns_go_first() -> None:
 )
 def test_what_cannot_be_read_says_why(arrays: dict[str, np.ndarray], reason: str) -> None:
     with pytest.raises(FileError, match=reason):
-        read_varying(npz_file.write(arrays), "npz", STATED)
+        read_varying(npz_writer.write(arrays), "npz", STATED)
 
 
 def test_scheduling_outside_the_declared_range_is_refused() -> None:
     with pytest.raises(RangeError, match="Wind speed runs"):
-        read_varying(csv_file.write(columns(p1=2 * P[:, 0], p2=P[:, 1])), "csv", STATED)
+        read_varying(csv_writer.write(columns(p1=2 * P[:, 0], p2=P[:, 1])), "csv", STATED)
     with pytest.raises(FileError, match="differ in length"):
-        read_varying(npz_file.write(columns(p1=P[:20, 0], p2=P[:, 1])), "npz", STATED)
+        read_varying(npz_writer.write(columns(p1=P[:20, 0], p2=P[:, 1])), "npz", STATED)

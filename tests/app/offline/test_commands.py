@@ -12,7 +12,8 @@ import yaml
 from typer.testing import CliRunner
 
 from app.cli import application
-from app.files import csv_file
+from app.files import csv_writer
+from app.files.readers import read_tables
 from app.report.numbers import significant
 from tests.support import responses
 from tests.support.paper import DEVIATIONS, GRID, NOISE_VARIANCE, PLANT, THETA, fir, played
@@ -50,8 +51,8 @@ def test_design_finds_what_the_paper_has(tmp_path: Path, designing: dict[str, ob
     assert design["totalEnergy"] == pytest.approx(3510.4, rel=1e-3)
     signals = json.loads((tmp_path / "results" / "signals.json").read_text())
     for signal in signals["signals"]:
-        samples = csv_file.read((tmp_path / "results" / f"signal-{signal['index']}.csv").read_bytes())
-        assert np.sum(samples["input"] ** 2) == pytest.approx(signal["energy"])
+        (samples,) = read_tables((tmp_path / "results" / f"signal-{signal['index']}.csv").read_bytes(), "csv")
+        assert np.sum(samples.column("input").values ** 2) == pytest.approx(signal["energy"])
     assert "3510" in output
     report = (tmp_path / "report.html").read_text()
     for shown in ("Input energy at each", "Spectrum of the input", "no design can need less than", "One period of the"):
@@ -79,7 +80,7 @@ def test_identify_reads_files_and_design_takes_its_model(tmp_path: Path, designi
     for point in (0.0, 4.0, 8.0):
         u = generator.normal(size=600)
         columns = {"time": np.arange(600.0), "input": u, "output": played(point, u, generator)}
-        (tmp_path / f"at-{point:g}.csv").write_bytes(csv_file.write(columns))
+        (tmp_path / f"at-{point:g}.csv").write_bytes(csv_writer.write(columns))
         experiments.append({"file": f"at-{point:g}.csv", "operatingPoint": [point]})
     inline = {"kind": "timeRecord", "operatingPoint": [2.0], "sampleTimeSeconds": 1, "input": u.tolist()}
     experiments.append({**inline, "output": played(2.0, u, generator).tolist()})

@@ -9,27 +9,38 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from app.files.table import MAX_EXPANDED_BYTES, MAX_MEMBERS, FileError, Table, Understand, named
+from app.files import npz_writer
+from app.files.contents import MAX_EXPANDED_BYTES, MAX_MEMBERS, FileError, Table, from_arrays
+from app.files.reader import Reader
 
 MAX_HEADER_BYTES = 10_000
 
 
-def read(content: bytes, understand: Understand = named) -> Table:
-    """The arrays of a file, as `understand` takes them.
+class NumpyArchive(Reader):
+    """Arrays that numpy.savez saved."""
 
-    Raises FileError when it is damaged, too large when expanded, or holds objects.
-    """
-    try:
-        with zipfile.ZipFile(io.BytesIO(content)) as archive:
-            members = archive.infolist()
-            _check(members)
-            return understand({info.filename.removesuffix(".npy"): _array(archive, info) for info in members})
-    except (zipfile.BadZipFile, zlib.error, EOFError, OSError, NotImplementedError, RuntimeError) as error:
-        raise FileError(f"the file is not a whole npz file: {str(error)[:200]}") from None
-    except FileError:
-        raise
-    except (ValueError, TypeError, SyntaxError, OverflowError, MemoryError, zipfile.LargeZipFile) as error:
-        raise FileError(f"the npz file cannot be read: {str(error)[:200]}") from None
+    kind = "npz"
+    title = "numpy archive"
+    endings = ("npz",)
+
+    @classmethod
+    def read(cls, content: bytes) -> list[Table]:
+        try:
+            with zipfile.ZipFile(io.BytesIO(content)) as archive:
+                members = archive.infolist()
+                _check(members)
+                return [from_arrays({one.filename.removesuffix(".npy"): _array(archive, one) for one in members})]
+        except (zipfile.BadZipFile, zlib.error, EOFError, OSError, NotImplementedError, RuntimeError) as error:
+            raise FileError(f"the file is not a whole npz file: {str(error)[:200]}") from None
+        except FileError:
+            raise
+        except (ValueError, TypeError, SyntaxError, OverflowError, MemoryError, zipfile.LargeZipFile) as error:
+            raise FileError(f"the npz file cannot be read: {str(error)[:200]}") from None
+
+    @classmethod
+    def example(cls) -> bytes:
+        k = np.arange(12.0)
+        return npz_writer.write({"time": 0.1 * k, "input": np.sign(np.sin(k)), "output": np.cos(0.7 * k)})
 
 
 def _check(members: list[zipfile.ZipInfo]) -> None:
@@ -64,10 +75,3 @@ def _array(archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> NDArray[Any]:
     stream.seek(0)
     array: NDArray[Any] = np.lib.format.read_array(stream, allow_pickle=False)
     return array
-
-
-def write(arrays: dict[str, NDArray[Any]]) -> bytes:
-    """The arrays as a compressed npz file."""
-    buffer = io.BytesIO()
-    np.savez_compressed(buffer, allow_pickle=False, **arrays)
-    return buffer.getvalue()

@@ -1,4 +1,4 @@
-"""MATLAB level 5 files: numeric arrays, also inside structures of size one.
+"""MATLAB level 5 files: numbers and texts, also inside structures, cells and objects of the old kind.
 
 They are read here, with every size checked against the bytes that are there: readers made for trusted files can be
 crashed by malformed ones.
@@ -14,45 +14,31 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from app.files.table import MAX_EXPANDED_BYTES, MAX_MEMBERS, FileError, Table, Understand, may_be_read, named
+from app.files.contents import MAX_EXPANDED_BYTES, FileError
 
 HEADER_BYTES = 128
 MAX_DEPTH = 8
-MAX_ELEMENTS = 10_000
+MAX_ELEMENTS = 100_000
 MATRIX, COMPRESSED = 14, 15
-STRUCT_CLASS, NUMERIC_CLASSES = 2, range(6, 16)
+CELL_CLASS, STRUCT_CLASS, OBJECT_CLASS, CHAR_CLASS, NUMERIC_CLASSES = 1, 2, 3, 4, range(6, 16)
+STRUCT_CLASSES = (STRUCT_CLASS, OBJECT_CLASS)
 NUMBER_TYPES = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 9: "f8", 12: "i8", 13: "u8"}
 COMPLEX_FLAG = 0x800
 
 
-def read(content: bytes, group: str = "", understand: Understand | None = None) -> Table:
-    """The arrays of a file, those inside the structure `group` (such as data.measured) when it is given.
-
-    With `understand` None, arrays that cannot be a measurement at one operating point are passed over.
+def tree(content: bytes) -> dict[str, Any]:
+    """The variables of a file: arrays, texts, lists (cells and arrays of structures) and dictionaries (structures).
 
     Raises FileError when the file is damaged, of another level, or holds too much.
     """
-    found = dict(_Reader(_byte_order(content)).arrays(content[HEADER_BYTES:]))
-    arrays = {name.rpartition(".")[2]: array for name, array in found.items() if name.rpartition(".")[0] == group}
-    if not arrays:
-        groups = sorted({name.rpartition(".")[0] for name in found} - {""})
-        raise FileError(
-            f"the mat file has no numeric arrays in {group!r}; it has some in: {', '.join(groups)[:500] or 'nothing'}"
-        )
-    if len(arrays) > MAX_MEMBERS:
-        raise FileError(f"the mat file has {len(arrays)} arrays, at most {MAX_MEMBERS} are read")
-    if understand is not None:
-        return understand(arrays)
-    return named({name: array for name, array in arrays.items() if may_be_read(name, array)})
+    return dict(_Reader(_byte_order(content)).variables(content[HEADER_BYTES:]))
 
 
 def _byte_order(content: bytes) -> str:
-    if content[:8] == b"\x89HDF\r\n\x1a\n" or content[:10] == b"MATLAB 7.3":
-        raise FileError("MATLAB files of version 7.3 are not read; save with -v7")
     orders = {b"IM": "<", b"MI": ">"}
     mark = content[126:128]
     if len(content) < HEADER_BYTES or mark not in orders:
-        raise FileError("the file is no MATLAB file of level 5; save with -v7")
+        raise FileError("the file is no MATLAB file of level 5 or 7.3; save with -v7 or -v7.3")
     return orders[mark]
 
 
@@ -62,15 +48,20 @@ class _Reader:
     expanded: int = field(default=0)
     elements: int = field(default=0)
 
-    def arrays(self, content: bytes) -> Iterator[tuple[str, NDArray[Any]]]:
-        """Names and values of the numeric arrays of a file."""
+    def variables(self, content: bytes) -> Iterator[tuple[str, Any]]:
+        """Names and values of the variables of a file."""
         for kind, data in self._walk(content):
             if kind == COMPRESSED:
                 for inner, inflated in self._walk(self._inflated(data)):
                     if inner == MATRIX:
-                        yield from self._matrix(inflated, "", 0)
+                        yield from self._named(inflated)
             elif kind == MATRIX:
-                yield from self._matrix(data, "", 0)
+                yield from self._named(data)
+
+    def _named(self, data: bytes) -> Iterator[tuple[str, Any]]:
+        found = self._matrix(data, 0)
+        if found is not None and found[0]:
+            yield found
 
     def _inflated(self, data: bytes) -> bytes:
         room = MAX_EXPANDED_BYTES - self.expanded
@@ -104,37 +95,57 @@ class _Reader:
                 raise FileError("the mat file is cut short")
             yield kind, data[start : start + size]
 
-    def _matrix(self, data: bytes, path: str, depth: int) -> Iterator[tuple[str, NDArray[Any]]]:
+    def _matrix(self, data: bytes, depth: int) -> tuple[str, Any] | None:
+        """Name and value of an array; None for what is empty or of a class that is not read, such as objects."""
         parts = list(self._walk(data))
         if not parts:
-            return
+            return None
         flags = int(self._numbers(parts[0])[:1].sum())
         kind, is_complex = flags & 0xFF, bool(flags & COMPLEX_FLAG)
-        if kind != STRUCT_CLASS and kind not in NUMERIC_CLASSES:
-            return
+        if kind not in (*STRUCT_CLASSES, CELL_CLASS, CHAR_CLASS, *NUMERIC_CLASSES):
+            return None
         if len(parts) < 3 or depth > MAX_DEPTH:
             raise FileError("the mat file is damaged, or its structures are nested too deeply")
         shape = tuple(int(n) for n in self._numbers(parts[1]))
         if not shape or min(shape) < 0:
             raise FileError("the mat file is damaged: an array has no sensible shape")
-        name = path + parts[2][1].decode("latin-1")
-        if kind == STRUCT_CLASS and math.prod(shape) == 1:
-            yield from self._fields(parts[3:], f"{name}.", depth)
-        elif kind in NUMERIC_CLASSES:
-            yield name, self._values(parts[3:], shape, is_complex)
+        name = parts[2][1].decode("latin-1")
+        if kind in STRUCT_CLASSES:
+            return name, self._structures(parts[3 + (kind == OBJECT_CLASS) :], math.prod(shape), depth)
+        if kind == CELL_CLASS:
+            inner = [self._matrix(one, depth + 1) for what, one in parts[3:] if what == MATRIX]
+            return name, [None if one is None else one[1] for one in inner]
+        if kind == CHAR_CLASS:
+            return name, self._text(parts[3:], shape)
+        return name, self._values(parts[3:], shape, is_complex)
 
-    def _fields(self, parts: list[tuple[int, bytes]], path: str, depth: int) -> Iterator[tuple[str, NDArray[Any]]]:
+    def _structures(self, parts: list[tuple[int, bytes]], count: int, depth: int) -> Any:
+        """The fields of a structure, or the list of those of an array of structures."""
         if len(parts) < 2:
             raise FileError("the mat file is damaged: a structure has no fields")
         width = int(self._numbers(parts[0])[:1].sum())
         names = parts[1][1]
-        count = len(names) // width if width > 0 else 0
-        if count != len(parts) - 2:
+        fields = len(names) // width if width > 0 else 0
+        if fields * count != len(parts) - 2:
             raise FileError("the mat file is damaged: a structure has not as many values as names")
-        for i, (kind, data) in enumerate(parts[2:]):
-            field_name = names[i * width : (i + 1) * width].partition(b"\0")[0].decode("latin-1")
-            if kind == MATRIX:
-                yield from self._matrix(data, path + field_name, depth + 1)
+        texts = [names[i * width : (i + 1) * width].partition(b"\0")[0].decode("latin-1") for i in range(fields)]
+        made: list[dict[str, Any]] = []
+        for i in range(count):
+            values = [self._matrix(one, depth + 1) for _, one in parts[2 + i * fields : 2 + (i + 1) * fields]]
+            made.append({text: value[1] for text, value in zip(texts, values, strict=True) if value is not None})
+        return made[0] if count == 1 else made
+
+    def _text(self, parts: list[tuple[int, bytes]], shape: tuple[int, ...]) -> str:
+        if not parts:
+            return ""
+        kind, data = parts[0]
+        encodings = {16: "utf-8", 17: "utf-16-le" if self.order == "<" else "utf-16-be"}
+        if kind in encodings:
+            return data.decode(encodings[kind], "replace")
+        codes = self._numbers(parts[0]).astype(np.int64)
+        if len(codes) != math.prod(shape):
+            raise FileError("the mat file is damaged: a text has not as many letters as its shape says")
+        return "".join(map(chr, codes[(codes > 0) & (codes < 0x110000)].tolist()))
 
     def _values(self, parts: list[tuple[int, bytes]], shape: tuple[int, ...], is_complex: bool) -> NDArray[Any]:
         if len(parts) < 1 + is_complex:

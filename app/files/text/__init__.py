@@ -1,0 +1,1 @@
+"""Tables in texts: encodings, decimal marks, separators, headers."""
