@@ -39,7 +39,9 @@ def records(points: int, lines: int, hidden: str, generator: np.random.Generator
     found = []
     for p in np.repeat(np.linspace(-1, 1, points), 2):
         u = np.exp(2j * np.pi * generator.random(lines)) * 20 * np.sqrt(2 / lines)
-        response = MODEL.frequency_response([[p]], omega)[0] * (np.exp(-0.005j * omega) if hidden == "delay" else 1)
+        response = MODEL.frequency_response([[p]], omega)[0, :, 0, 0] * (
+            np.exp(-0.005j * omega) if hidden == "delay" else 1
+        )
         signals = []
         for phasors in (u, response * u):
             spectrum = np.zeros(PERIOD // 2 + 1, dtype=complex)

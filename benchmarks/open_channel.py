@@ -85,7 +85,7 @@ def picture(found: dict[str, Any], names: tuple[str, ...], page: Path) -> None:
     for row, name in enumerate(names, 1):
         for x in sorted(MEASURED + BETWEEN):
             truth = channel.response(x, FREQUENCIES, without_delays=True)
-            model = found[name][0].frequency_response([[x]], FREQUENCIES)[0]
+            model = found[name][0].frequency_response([[x]], FREQUENCIES)[0, :, 0, 0]
             for u in range(2):
                 colour, label = ("green", "measured") if x in MEASURED else ("red", "between")
                 for values, line in ((model, {"color": colour}), (truth, {"color": "blue", "dash": "dash"})):

@@ -49,8 +49,8 @@ def main() -> None:
     expected = Model(structure, dependence, theta, found.expected_covariance, prior.noise_variance)
     omega = np.geomspace(20.0, 200.0, 200)
     for point in accurate.operating_points:
-        response = expected.frequency_response([point], omega)[0]
-        known = gain_and_phase(response, expected.response_covariance([point], omega)[0])
+        response = expected.frequency_response([point], omega)[0, :, 0, 0]
+        known = gain_and_phase(response, expected.response_covariance([point], omega)[0, :, 0, 0])
         worst = 196 * np.max(known.gain_deviation / known.gain)
         print(f"  load {point[0]:g} kg: gain known to ±{worst:.2f} % from 20 to 200 rad/s")
 

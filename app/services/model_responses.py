@@ -80,7 +80,7 @@ def _evaluated(document: Model, plant: Plant, point: list[float], channel: tuple
 
 def _extended(document: Model, plant: Plant, point: list[float]) -> _Evaluated:
     model = extended_model(document, plant)
-    known = model.covariance is not None
+    known = model.joint_covariance is not None
 
     def found(omega: FloatArray) -> LinearResponse:
         return linear_response(model, [point], omega)
@@ -103,8 +103,8 @@ def _rational(document: Model, plant: Plant, point: list[float]) -> _Evaluated:
     model = kept_model(document, plant)
     return _Evaluated(
         model.structure.sample_time,
-        lambda omega: model.frequency_response([point], omega)[0],
-        None if document.covariance is None else lambda omega: model.response_covariance([point], omega)[0],
+        lambda omega: model.frequency_response([point], omega)[0, :, 0, 0],
+        None if document.covariance is None else lambda omega: model.response_covariance([point], omega)[0, :, 0, 0],
     )
 
 

@@ -105,13 +105,13 @@ class Model:
         return self.dependence.coefficients(self.theta, points)
 
     def frequency_response(self, points: ArrayLike, omega: FloatArray) -> ComplexArray:
-        """G(p, ω) at the operating points (M, s) and ω (F,) in rad/s, as (M, F)."""
-        return self.structure.plant_response(self.coefficients(points), omega)
+        """G(p, ω) at the operating points (M, s) and ω (F,) in rad/s, as (M, F, n_y, n_u)."""
+        return self.structure.response(self.coefficients(points), np.asarray(omega, dtype=np.float64))
 
     def response_covariance(self, points: ArrayLike, omega: FloatArray) -> FloatArray:
-        """Covariance of (Re G, Im G) at the points (M, s) and ω (F,), as (M, F, 2, 2), to first order in P_θ."""
-        gradient = self.structure.plant_gradient(self.coefficients(points), omega)
-        sensitivity = self.pulled(np.swapaxes(gradient, 1, 2), points)
+        """Covariance of (Re, Im) of each entry of G, as (M, F, n_y, n_u, 2, 2), to first order in P_θ."""
+        gradient = self.structure.gradient(self.coefficients(points), np.asarray(omega, dtype=np.float64))
+        sensitivity = self.pulled(gradient, points)
         parts = np.stack([sensitivity.real, sensitivity.imag], axis=-2)
         return np.asarray(parts @ self.plant_covariance @ np.swapaxes(parts, -1, -2))
 

@@ -38,7 +38,7 @@ class ResponseDeviation:
         points = np.array(self.operating_points, ndmin=2)
         gradient = model.structure.plant_gradient(model.coefficients(points), omega)
         g = model.pulled(np.swapaxes(gradient, 1, 2), points)
-        gain = abs(model.frequency_response(points, omega)) if self.relative else 1.0
+        gain = abs(model.frequency_response(points, omega)[..., 0, 0]) if self.relative else 1.0
         delta = np.broadcast_to(self.standard_deviation * gain, g.shape[:2]).reshape(-1, 1, 1)
         g = np.pad(g.reshape(-1, g.shape[-1]), ((0, 0), (0, model.noise_size)))
         if np.any(delta <= 0):

@@ -124,7 +124,7 @@ def test_response_covariance_is_that_of_many_draws():
     draws = THETA + (root @ g.standard_normal((6, 20000))).T
     zeta = draws @ DEPENDENCE.matrix([[4.0]])[0].T
     responses = EXAMPLE.plant_response(zeta, omega)
-    found = model.response_covariance([[4.0]], omega)[0]
+    found = model.response_covariance([[4.0]], omega)[0, :, 0, 0]
     for f in range(2):
         sample = np.cov(responses[:, f].real, responses[:, f].imag)
         scale = np.sqrt(np.outer(np.diag(found[f]), np.diag(found[f])))

@@ -90,7 +90,7 @@ def _add_measured(figure: go.Figure, model: Model, measured: Sequence[FrequencyR
         omega, values = response.frequencies, response.response
         noise = np.zeros(len(omega)) if response.variance is None else np.sqrt(response.variance)
         kept = (omega > 0) & (noise < WORST_SHOWN * abs(values))
-        near = model.frequency_response([response.operating_point], omega)[0]
+        near = model.frequency_response([response.operating_point], omega)[0, :, 0, 0]
         phase = _known(model, response.operating_point, omega).phase + np.angle(values / near)
         for row, y in enumerate((abs(values), np.rad2deg(phase)), start=1):
             common = {"mode": "markers", "name": name, "legendgroup": name, "showlegend": False}
@@ -111,7 +111,10 @@ def _add_curve(
 
 
 def _known(model: Model, point: OperatingPoint, omega: FloatArray) -> GainAndPhase:
-    response, covariance = model.frequency_response([point], omega)[0], model.response_covariance([point], omega)[0]
+    response, covariance = (
+        model.frequency_response([point], omega)[0, :, 0, 0],
+        model.response_covariance([point], omega)[0, :, 0, 0],
+    )
     return gain_and_phase(response, covariance)
 
 

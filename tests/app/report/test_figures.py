@@ -34,7 +34,7 @@ def curves(plot: Plot, name: str) -> list[np.ndarray]:
 def test_bode_shows_gain_and_phase_of_model_and_truth() -> None:
     model = resonance()
     plot = bode(model, [(1.0,)], OMEGA, AXES, truth=model)
-    response = model.frequency_response([(1.0,)], OMEGA)[0]
+    response = model.frequency_response([(1.0,)], OMEGA)[0, :, 0, 0]
     for name in ("n = 1 1/s", "truth"):
         gain, phase = curves(plot, name)[-2:]
         np.testing.assert_allclose(gain, abs(response))
@@ -43,7 +43,7 @@ def test_bode_shows_gain_and_phase_of_model_and_truth() -> None:
 
 def test_bode_leaves_out_points_that_are_noise_and_keeps_the_phase_near_the_model() -> None:
     model = resonance()
-    response = model.frequency_response([(1.0,)], OMEGA)[0]
+    response = model.frequency_response([(1.0,)], OMEGA)[0, :, 0, 0]
     variance = np.where(np.arange(len(OMEGA)) < 30, 1e-4, 1.0) * abs(response) ** 2
     measured = FrequencyResponse(OMEGA, response, (1.0,), 0.5, variance)
     plot = bode(model, [(1.0,)], OMEGA, AXES, [measured])

@@ -128,7 +128,7 @@ def test_what_needs_records_is_not_judged_from_responses():
     g = np.random.default_rng(5)
     omega = np.linspace(1, 12, 50)
     noise = 1e-4 * (g.standard_normal((5, 50)) + 1j * g.standard_normal((5, 50)))
-    clean = MODEL.frequency_response([[p] for p in POINTS], omega) + 3e-5j * omega
+    clean = MODEL.frequency_response([[p] for p in POINTS], omega)[..., 0, 0] + 3e-5j * omega
     data = [
         FrequencyResponse(omega, row, (p,), variance=np.full(50, 2e-8))
         for p, row in zip(POINTS, clean + noise, strict=True)
@@ -169,10 +169,11 @@ def test_the_picture_of_what_is_missing_has_its_shape():
     found = diagnose(MODEL, data)
     (picture,) = missing_response(found.base)
     assert picture.response.shape == (5, 60)
-    true = MODEL.frequency_response([[p] for p in POINTS], picture.frequencies)
+    true = MODEL.frequency_response([[p] for p in POINTS], picture.frequencies)[..., 0, 0]
     after = found.best.fit.model
-    wanted = true * np.exp(-0.02j * picture.frequencies) - found.base.model.frequency_response(
-        [[p] for p in POINTS], picture.frequencies
+    wanted = (
+        true * np.exp(-0.02j * picture.frequencies)
+        - found.base.model.frequency_response([[p] for p in POINTS], picture.frequencies)[..., 0, 0]
     )
     overlap = abs(np.vdot(wanted, picture.response)) / np.linalg.norm(wanted) / np.linalg.norm(picture.response)
     assert overlap > 0.85

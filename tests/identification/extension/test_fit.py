@@ -59,7 +59,7 @@ def test_an_amplitude_may_depend_on_the_operating_point():
     data = [
         FrequencyResponse(
             omega,
-            MODEL.frequency_response([[p]], omega)[0] + 1j * omega * (2e-3 + 1e-3 * p),
+            MODEL.frequency_response([[p]], omega)[0, :, 0, 0] + 1j * omega * (2e-3 + 1e-3 * p),
             (p,),
             variance=np.full(40, 1e-12),
         )
@@ -77,7 +77,7 @@ def test_an_amplitude_keeps_its_physical_sign():
 def test_without_a_known_noise_the_covariance_is_scaled_by_the_residual():
     g = np.random.default_rng(8)
     omega = np.geomspace(0.5, 20, 60)
-    base = MODEL.frequency_response([[p] for p in POINTS], omega)
+    base = MODEL.frequency_response([[p] for p in POINTS], omega)[..., 0, 0]
     noise = 1 + 0.05 * (g.standard_normal(base.shape) + 1j * g.standard_normal(base.shape)) / np.sqrt(2)
     data = [FrequencyResponse(omega, row, (p,)) for p, row in zip(POINTS, base * noise, strict=True)]
     found = fit(MODEL, Rows(gather(data)))

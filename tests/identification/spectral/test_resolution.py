@@ -52,7 +52,7 @@ def test_a_coarse_converter_is_no_misfit_and_its_step_is_said():
     assert found.overall.statistic > 0.3 * found.overall.degrees_of_freedom
     assert "0.02" in found.notes[0][1]
     response = PeriodicAverage().estimate(rounded[0])
-    model = MODEL.frequency_response([rounded[0].operating_point], response.frequencies)[0]
+    model = MODEL.frequency_response([rounded[0].operating_point], response.frequencies)[0, :, 0, 0]
     z = abs(response.response - model) ** 2 / response.variance
     assert 0.3 < np.mean(z) < 3
 
