@@ -91,6 +91,26 @@ def demo(
     run(output, seed, hidden)
 
 
+@application.command()
+def backup(
+    target: Annotated[Path, typer.Argument(file_okay=False, help="folder of the backup; a later one only adds to it")],
+) -> None:
+    """Copy the data directory (LPV_OED_DATA_DIR) to TARGET, also while the service runs."""
+    from app.backups import backup as run
+
+    run(target)
+
+
+@application.command()
+def restore(
+    source: Annotated[Path, typer.Argument(exists=True, file_okay=False, help="folder of a backup")],
+) -> None:
+    """Make an empty data directory (LPV_OED_DATA_DIR) of a backup, after it was found to be whole."""
+    from app.backups import restore as run
+
+    run(source)
+
+
 def main() -> None:
     """The program lpv-oed; the matrices are small, and more threads would only wait for each other."""
     for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):

@@ -5,6 +5,7 @@ from app.jobs.executor import LocalExecutor
 from app.jobs.hub import Hub
 from app.jobs.journal import Journal
 from app.jobs.ledger import Ledger
+from app.services.housekeeping import Housekeeping
 from app.services.job_events import JobEvents
 from app.services.readiness import Readiness
 from app.settings import Settings
@@ -33,6 +34,7 @@ class Container:
         self.ledger = Ledger(self.database, kinds, self._executor, self.hub)
         self.job_events = JobEvents(self.ledger, self.hub, settings.max_event_streams)
         self.readiness = Readiness(self.database, settings.data_dir, settings.disk_reserve_bytes)
+        self._housekeeping = Housekeeping(self.database, settings.arrays_dir, settings.unused_days)
         self._started = False
         self._lock = DirectoryLock(settings.data_dir)
 
@@ -51,6 +53,7 @@ class Container:
             self._lock.release()
             raise
         self._executor.start()
+        self._housekeeping.start()
         self._started = True
 
     def stop_work(self) -> None:
@@ -61,5 +64,6 @@ class Container:
     def stop(self) -> None:
         """End the jobs and let go of everything."""
         self.stop_work()
+        self._housekeeping.stop()
         self.database.close()
         self._lock.release()

@@ -41,6 +41,11 @@ class Settings(BaseSettings):
         description="room on the disk of the data directory below which nothing is taken in",
     )
     max_body_bytes: int = Field(default=64 * MEBIBYTE, ge=1024, description="largest request body")
+    unused_days: float = Field(
+        default=7.0,
+        ge=0.01,
+        description="days after which array files go that nothing names, as uploads of failed jobs",
+    )
     max_event_streams: int = Field(default=1000, ge=1, description="streams of job events at the same time")
     request_seconds: float = Field(
         default=20.0, gt=0, description="time for the head of a request, and for its body beside a second per 16 KiB"

@@ -1,10 +1,12 @@
 """Arrays in content-addressed files: the name is the SHA-256 of the content, so a file never changes."""
 
+import fcntl
 import hashlib
 import io
 import os
 import zipfile
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 from uuid import uuid4
@@ -58,8 +60,11 @@ class ArrayStore:
         content = encode(arrays)
         digest = hashlib.sha256(content).hexdigest()
         path = self.path(digest)
-        if not self._is_intact(digest):
-            self._write(path, content)
+        with keeping(self._root):
+            if self._is_intact(digest):
+                os.utime(path)
+            else:
+                self._write(path, content)
         _sync_directory(path.parent)
         _sync_directory(self._root)
         return digest
@@ -111,6 +116,31 @@ class ArrayStore:
         except BaseException:
             temporary.unlink(missing_ok=True)
             raise
+
+
+@contextmanager
+def keeping(root: Path) -> Iterator[None]:
+    """While files are written or copied: no file is removed."""
+    with _lock_of(root).open("a") as file:
+        fcntl.flock(file, fcntl.LOCK_SH)
+        yield
+
+
+@contextmanager
+def alone(root: Path) -> Iterator[bool]:
+    """While files are removed: whether this may be done now, which it may not while a backup is made."""
+    with _lock_of(root).open("a") as file:
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            yield False
+        else:
+            yield True
+
+
+def _lock_of(root: Path) -> Path:
+    root.mkdir(parents=True, exist_ok=True)
+    return root / "keeping.lock"
 
 
 def encode(arrays: Mapping[str, Array]) -> bytes:

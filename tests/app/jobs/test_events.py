@@ -1,14 +1,25 @@
 """Job events as a stream: complete, in order, resumable, and over when the job is."""
 
+import asyncio
 import json
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
 from threading import Thread
 from typing import Any
 
 import pytest
+from fastapi.testclient import TestClient
 
+from app.jobs.hub import Hub
+from app.jobs.records import JobEventRecord
+from app.main import create_app
+from app.services.job_events import JobEvents
+from app.settings import Settings
 from tests.app.jobs.bench import Bench
-from tests.support.patience import PATIENCE
+from tests.support.patience import PATIENCE, until
 
 
 @dataclass(frozen=True)
@@ -95,3 +106,72 @@ def test_events_of_an_unknown_job_are_not_found(bench: Bench) -> None:
     answer = bench.client.get("/v1/jobs/unknown/events")
     assert answer.status_code == 404
     assert answer.headers["content-type"] == "application/problem+json"
+
+
+def test_only_watchers_of_the_job_are_woken() -> None:
+    async def woken() -> list[bool]:
+        hub = Hub()
+        with hub.watching("a") as first, hub.watching("b") as second, hub.watching("a") as third:
+            hub.notify("a", "c")
+            await asyncio.sleep(0.01)
+            states = [event.is_set() for event in (first, second, third)]
+            hub.close()
+            await asyncio.sleep(0.01)
+            return [*states, second.is_set()]
+
+    assert asyncio.run(woken()) == [True, False, True, True]
+
+
+class CountingLedger:
+    """Events of jobs, and how often they were read."""
+
+    def __init__(self, names: Sequence[str]) -> None:
+        self.names = names
+        self.reads = 0
+
+    def events(self, job_id: str, after: int) -> list[JobEventRecord]:
+        self.reads += 1
+        progress = {"progress": {"fraction": 0.0, "message": ""}, "attempts": 1, "result": None, "problem": None}
+        now = datetime.now(UTC)
+        given = [
+            JobEventRecord(seq, job_id, now, name, {**progress, "state": name})  # type: ignore[arg-type]
+            for seq, name in enumerate(self.names, start=1)
+        ]
+        return given[after : after + 1]
+
+
+def streams(ledger: CountingLedger, count: int, most: int = 1000) -> list[bytes]:
+    async def read(events: JobEvents) -> bytes:
+        return b"".join([chunk async for chunk in events.watch("a")])
+
+    async def all_of_them() -> list[bytes]:
+        events = JobEvents(ledger, Hub(), most)  # type: ignore[arg-type]
+        found = await asyncio.gather(*(read(events) for _ in range(count)))
+        assert events.streams == 0
+        return found
+
+    return asyncio.run(all_of_them())
+
+
+def test_what_happens_is_read_once_for_all_who_watch() -> None:
+    ledger = CountingLedger(["queued", "queued", "cancelled"])
+    found = streams(ledger, 300)
+    assert ledger.reads == 3
+    assert len(set(found)) == 1
+    assert found[0].count(b"\r\n\r\n") == 3
+
+
+def test_no_more_streams_are_kept_than_there_may_be(settings: Settings, tmp_path: Path) -> None:
+    application = create_app(settings.model_copy(update={"max_event_streams": 1}))
+    with TestClient(application, base_url="http://127.0.0.1") as client:
+        small = Bench(client, application.state.container)
+        job = small.submit(hold=str(tmp_path / "go"))
+        with ThreadPoolExecutor(1) as pool:
+            first = pool.submit(watch, small, job.id)
+            until(lambda: small.container.job_events.streams == 1, "the first stream")
+            answer = client.get(f"/v1/jobs/{job.id}/events")
+            assert answer.status_code == 503
+            assert "LPV_OED_MAX_EVENT_STREAMS" in answer.json()["detail"]
+            (tmp_path / "go").touch()
+            assert [event.name for event in first.result()][-1] == "succeeded"
+        assert watch(small, job.id)

@@ -90,6 +90,24 @@ def test_killed_child_fails_its_job_and_no_other(bench: Bench, tmp_path: Path) -
     assert bench.run(name="next")["state"] == "succeeded"
 
 
+def test_a_child_that_is_killed_from_outside_is_no_end_of_its_job(bench: Bench, tmp_path: Path) -> None:
+    note = tmp_path / "pid"
+    job = bench.submit(hold=str(tmp_path / "go"), note=str(note))
+    until(note.exists, "the start of the task")
+    os.kill(int(note.read_text()), 9)
+    (tmp_path / "go").touch()
+    document = bench.wait(job)
+    assert (document["state"], document["attempts"]) == ("succeeded", 2)
+    names = [event.name for event in bench.container.ledger.events(job.id) if event.name != "progress"]
+    assert names == ["queued", "started", "requeued", "started", "succeeded"]
+
+
+def test_an_input_that_crashes_its_reader_is_not_read_again(bench: Bench) -> None:
+    document = bench.run(end="abort")
+    assert (document["state"], document["attempts"]) == ("failed", 1)
+    assert "signal 6" in document["problem"]["detail"]
+
+
 def test_idle_child_that_was_killed_is_replaced(bench: Bench) -> None:
     pids = {_pid(bench, bench.run()) for _ in range(4)}
     for pid in pids:

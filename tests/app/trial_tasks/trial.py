@@ -73,6 +73,10 @@ def _kill(payload: dict[str, Any], context: TaskContext) -> TaskResult:
     raise AssertionError
 
 
+def _abort(payload: dict[str, Any], context: TaskContext) -> TaskResult:
+    os.abort()
+
+
 def _exit(payload: dict[str, Any], context: TaskContext) -> TaskResult:
     sys.exit(0)
 
@@ -88,6 +92,7 @@ _END = {
     "fault": _fault,
     "hoard": _hoard,
     "kill": _kill,
+    "abort": _abort,
     "exit": _exit,
     "no number": _no_number,
 }
