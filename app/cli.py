@@ -24,12 +24,37 @@ Output = Annotated[
 Report = Annotated[Path | None, typer.Option("--report", dir_okay=False, help="write the figures as one HTML file")]
 
 
+def _show_version(wanted: bool) -> None:
+    if wanted:
+        from app import __version__
+
+        typer.echo(f"lpv-oed {__version__}")
+        raise typer.Exit
+
+
+@application.callback()
+def common(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_show_version, is_eager=True, help="say the version and end")
+    ] = False,
+) -> None:
+    """What all commands share."""
+
+
 @application.command()
-def serve() -> None:
-    """Start the service; LPV_OED_HOST, LPV_OED_PORT and the other LPV_OED_ variables set it up."""
+def serve(
+    port: Annotated[int | None, typer.Option(min=0, max=65535, help="port to listen on; default: 8000")] = None,
+    host: Annotated[str | None, typer.Option(help="address to listen on; beyond 127.0.0.1 with LPV_OED_TOKEN")] = None,
+    data_dir: Annotated[Path | None, typer.Option(help="directory of all that is kept; default: lpv-oed-data")] = None,
+    opens: Annotated[bool, typer.Option("--open", help="show the workbench in the browser")] = False,
+) -> None:
+    """Start the service; LPV_OED_HOST, LPV_OED_PORT and the other LPV_OED_ variables set it up where options do not."""
+    for name, value in (("PORT", port), ("HOST", host), ("DATA_DIR", data_dir)):
+        if value is not None:
+            os.environ[f"LPV_OED_{name}"] = str(value)
     from app.serve import serve as run
 
-    run()
+    run(opens)
 
 
 @application.command()

@@ -6,6 +6,7 @@ import logging
 import time
 from urllib.parse import urlsplit
 
+from anyio import move_on_after
 from starlette.datastructures import Headers
 from starlette.exceptions import HTTPException
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
@@ -26,6 +27,7 @@ from app.store.faults import fault_of
 logger = logging.getLogger(__name__)
 OPEN_PATHS = ("/v1/health", "/v1/readiness")
 SLOWEST_BYTES_PER_SECOND = 16 * 1024
+MOST_TAKEN_IN = 4 * 1024**3  # bytes of a refused body
 TOO_SLOW = "the body did not come in time; send it faster, or raise LPV_OED_REQUEST_SECONDS"
 
 
@@ -41,7 +43,7 @@ class Guard:
         try:
             self.check(scope, Headers(scope=scope))
         except ProblemError as refusal:
-            return await answer(refusal, scope["path"])(scope, receive, send)
+            return await answer(refusal, scope["path"])(scope, receive, self.answerer(scope, receive, send))
         await self._app(scope, self.receiver(receive), send)
 
     def check(self, scope: Scope, headers: Headers) -> None:
@@ -50,6 +52,10 @@ class Guard:
     def receiver(self, receive: Receive) -> Receive:
         """What the application reads the body from."""
         return receive
+
+    def answerer(self, scope: Scope, receive: Receive, send: Send) -> Send:
+        """What a refusal is sent with."""
+        return send
 
 
 class FaultGuard:
@@ -131,9 +137,25 @@ class BodyGuard(Guard):
         return f"the body is larger than {self._most_bytes} bytes; send less or raise LPV_OED_MAX_BODY_BYTES"
 
     def check(self, scope: Scope, headers: Headers) -> None:
-        announced = headers.get("content-length", "0")
-        if announced.isdecimal() and int(announced) > self._most_bytes:
+        if _announced(headers) > self._most_bytes:
             raise ContentTooLargeError(self._refusal)
+
+    def answerer(self, scope: Scope, receive: Receive, send: Send) -> Send:
+        """Answers at once, then takes in what was announced (not without end), or the sender might see no answer."""
+        headers = Headers(scope=scope)
+        if not self._most_bytes < _announced(headers) <= MOST_TAKEN_IN or "expect" in headers:
+            return send
+
+        async def patient(message: Message) -> None:
+            if message["type"] != "http.response.body" or message.get("more_body"):
+                return await send(message)
+            await send({**message, "more_body": True})
+            with move_on_after(self._seconds):
+                while (await receive()).get("more_body"):
+                    pass
+            await send({"type": "http.response.body", "body": b""})
+
+        return patient
 
     def receiver(self, receive: Receive) -> Receive:
         received = 0
@@ -156,6 +178,12 @@ class BodyGuard(Guard):
             return message
 
         return limited
+
+
+def _announced(headers: Headers) -> int:
+    """The length of the body that the sender announced, 0 where it did not."""
+    announced = headers.get("content-length", "0")
+    return int(announced) if announced.isdecimal() else 0
 
 
 def _is_address(text: str) -> bool:

@@ -1,7 +1,9 @@
 """The server process."""
 
+import errno
 import os
 import socket
+import webbrowser
 from functools import partial
 from threading import Timer
 from typing import Any
@@ -33,9 +35,10 @@ class Server(uvicorn.Server):
     What keeps it from starting, such as a full disk, ends the program with what to change.
     """
 
-    def __init__(self, config: uvicorn.Config, application: FastAPI) -> None:
+    def __init__(self, config: uvicorn.Config, application: FastAPI, opens: bool = False) -> None:
         super().__init__(config)
         self._container = application.state.container
+        self._opens = opens
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
         try:
@@ -46,6 +49,9 @@ class Server(uvicorn.Server):
                 raise
             raise SystemExit(f"lpv-oed cannot start: {reason}") from None
         await super().startup(sockets)
+        if self._opens and self.started:
+            host = f"[{self.config.host}]" if ":" in self.config.host else self.config.host
+            await run_sync(webbrowser.open, f"http://{host}:{self.config.port}")
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
         end = Timer(SECONDS_TO_STOP, os._exit, [1])  # everything that was acknowledged survives this as well
@@ -55,12 +61,14 @@ class Server(uvicorn.Server):
         await super().shutdown(sockets)
 
 
-def serve() -> None:
+def serve(opens: bool = False) -> None:
     """Serve until SIGTERM or SIGINT; running jobs are queued again and go on at the next start.
 
-    Settings that are refused end the program with what to change.
+    Settings that are refused, and a port that is taken, end the program with what to change. `opens`: show the
+    workbench in the browser once it answers.
     """
     settings = settings_or_exit()
+    require_free(settings.host, settings.port)
     application = create_app(settings)
     protocol: Any = partial(PatientProtocol, head_seconds=settings.request_seconds)
     config = uvicorn.Config(
@@ -71,7 +79,22 @@ def serve() -> None:
         access_log=False,
         timeout_graceful_shutdown=SECONDS_FOR_ANSWERS,
     )
-    Server(config, application).run()
+    Server(config, application, opens).run()
+
+
+def require_free(host: str, port: int) -> None:
+    """Ends the program where nothing can listen at an address, saying why."""
+    try:
+        family, _, _, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE)[0]
+        with socket.socket(family) as probe:
+            probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            probe.bind(address)
+    except OSError as error:
+        if error.errno == errno.EADDRINUSE:
+            reason = f"another program listens on port {port} of {host}; stop it, or choose another port with --port"
+        else:
+            reason = f"port {port} of {host} cannot be listened on ({error.strerror}); choose others with --port"
+        raise SystemExit(f"lpv-oed cannot start: {reason}") from None
 
 
 def why_not_started(error: Exception) -> str | None:

@@ -3,12 +3,13 @@
 import json
 from typing import Annotated, Any, get_args
 
-from fastapi import APIRouter, File, Form, Query, Response, UploadFile
+from fastapi import APIRouter, Depends, File, Form, Query, Response, UploadFile
 from fastapi.exceptions import RequestValidationError
 from pydantic import ValidationError
 
 from app.dependencies import ContainerDependency, Cursor, IdempotencyKey, Limit, ResourcesDependency
 from app.files.stored import Format
+from app.forms import known_fields
 from app.routers.downloads import file_answer, file_response
 from app.schemas.conditions import InputHold
 from app.schemas.experiments import (
@@ -43,7 +44,7 @@ def create_experiment(
     return accepted(experiments.submit(container, body, key), response)
 
 
-@router.post("/files", status_code=202)
+@router.post("/files", status_code=202, dependencies=[Depends(known_fields)])
 def upload_experiment(
     container: ContainerDependency,
     response: Response,

@@ -1,8 +1,10 @@
 """Bad input through HTTP: each gets a clear problem at the right field, and the server goes on."""
 
 import json
+import socket
 from collections.abc import Iterator
 from typing import Any
+from urllib.parse import urlsplit
 
 import numpy as np
 import pytest
@@ -10,6 +12,7 @@ import pytest
 from tests.support.api import Api, JobFailedError, Json, pointers
 from tests.support.bad_files import BAD_FILES
 from tests.support.paper import FIGURES, NOISE_VARIANCE, PLANT, THETA, only, played, prepared
+from tests.support.patience import PATIENCE
 from tests.support.server import running_server
 
 RECORD: Json = {"kind": "timeRecord", "operatingPoint": [1.0], "sampleTimeSeconds": 1.0}
@@ -143,9 +146,39 @@ def test_bad_files(api: Api, plant: Json, name: str) -> None:
     assert api.get("/health")["status"] == "ok"
 
 
+@pytest.mark.parametrize(
+    ("fields", "pointer"),
+    [
+        ({"periodSample": "4"}, "/periodSample"),
+        ({"sampletimeseconds": "1"}, "/sampletimeseconds"),
+        ({"periodSamples": ["4", "5"]}, "/periodSamples"),
+        ({"plantId": ["0" * 32, "1" * 32]}, "/plantId"),
+    ],
+)
+def test_unknown_and_repeated_fields_of_uploads_are_refused(
+    api: Api, plant: Json, fields: dict[str, Any], pointer: str
+) -> None:
+    given = {"plantId": plant["id"], "operatingPoint": ["1.0"], **fields}
+    content = b"time,input,output\n0,1,2\n1,2,1\n2,1,1\n"
+    problem = api.problem(api.http.post("/experiments/files", data=given, files={"file": ("a.csv", content)}))
+    assert problem["status"] == 422
+    assert pointers(problem) == [pointer]
+
+
+@pytest.mark.parametrize("size", [2_000_001, 30_000_000])
+def test_a_body_over_the_limit_is_answered_before_the_connection_closes(api: Api, size: int) -> None:
+    address = urlsplit(api.url)
+    with socket.create_connection((address.hostname, address.port), timeout=PATIENCE) as connection:
+        head = f"POST /v1/plants HTTP/1.1\r\nHost: {address.netloc}\r\nContent-Length: {size}\r\n"
+        connection.sendall(head.encode() + b"Content-Type: application/json\r\n\r\n")
+        connection.sendall(b" " * size)
+        answer = connection.makefile("rb").readline()
+    assert answer.startswith(b"HTTP/1.1 413 ")
+
+
 def test_files_of_no_known_kind_and_empty_files_are_refused_at_once(api: Api, plant: Json) -> None:
     fields = {"plantId": plant["id"], "operatingPoint": ["1.0"]}
-    for name, content in (("data.xlsx", b"x"), ("data.csv", b"")):
+    for name, content in (("data.pdf", b"x"), ("data.csv", b"")):
         problem = api.problem(api.http.post("/experiments/files", data=fields, files={"file": (name, content)}))
         assert pointers(problem) == ["/file"]
 
