@@ -12,7 +12,7 @@ from identification.extension.rows import Rows
 from identification.places.placed import PlacedEffect
 
 SHORT_LIST = 8
-STARTS = 2
+STARTS, NEAR, APART = 3, 0.5, 2
 LIKELY = 6.0
 ALIKE = 2.0
 HOPELESS = 60.0
@@ -121,14 +121,18 @@ def _tried(score: Score) -> int:
 
 
 def _starts(base: Fit, score: Score) -> list[int]:
-    """The best variant, and for effects with further parameters the best of those that are not its neighbours."""
+    """The best variant and up to two more that come near it; where parameters are fitted, none next to another."""
     signatures = score.candidate.signatures
-    if len(signatures) == 1 or not score.candidate.effect.fitted_names():
-        return [score.best]
     sizes = np.array([float(np.sum((one.basis @ base.residual) ** 2)) for one in signatures])
-    sizes[abs(np.arange(len(sizes)) - score.best) <= 2] = -1.0
-    other = int(np.argmax(sizes))
-    return [score.best, other] if sizes[other] > 0.7 * score.statistic and STARTS > 1 else [score.best]
+    apart = APART if score.candidate.effect.fitted_names() else 0
+    found = [score.best]
+    while len(found) < STARTS:
+        near = np.min(abs(np.arange(len(sizes))[:, None] - found), axis=1) <= apart
+        other = int(np.argmax(np.where(near, -1.0, sizes)))
+        if not sizes[other] > NEAR * score.statistic or near[other]:
+            break
+        found.append(other)
+    return found
 
 
 def _attempt(base: Fit, score: Score, variant: int, hopeless: float) -> Fit:

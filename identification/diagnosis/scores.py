@@ -36,7 +36,8 @@ def score_tests(fit: Fit, seen: Sequence[Candidate], generator: np.random.Genera
     S is χ² with as many degrees of freedom as amplitudes, or F where the noise variance was estimated; one-sided where
     the sign of the amplitude is physical. p of an effect with several variants, and p of the family of effects, come
     from draws of the joint normal distribution of all Q r, whose covariance Q Qᵀ is known; below the smallest p that
-    the draws resolve they are bounded by the sum over what was tried.
+    the draws resolve they are bounded by the sum over what was tried. The best variant is the one that explains most,
+    S − c ln R with c amplitudes: p of variants that meet noise variances of different freedom cannot be compared.
     """
     if not seen:
         return ()
@@ -52,8 +53,8 @@ def score_tests(fit: Fit, seen: Sequence[Candidate], generator: np.random.Genera
     ranks = (np.argsort(np.argsort(least_null, axis=0), axis=0) + 1) / (len(least_null) + 1)
     smallest = np.sort(ranks.min(axis=1))
     family = [_tail(p, smallest, len(seen)) for p in own]
-    sizes = np.array(statistics)
-    best = [int(np.lexsort((-sizes[group], alone[group]))[0]) for group in groups]
+    worth = [s - len(one.basis) * np.log(fit.rows.count) for one, s in zip(signatures, statistics, strict=True)]
+    best = [int(np.argmax(worth[group])) for group in groups]
     flat = [statistics[group.start + b] for group, b in zip(groups, best, strict=True)]
     return tuple(Score(*one) for one in zip(seen, best, flat, map(float, own), family, strict=True))
 
