@@ -9,6 +9,7 @@ from identification.arrays import FloatArray
 from identification.diagnosis.scores import Score
 from identification.extension.fit import Fit, fit
 from identification.extension.rows import Rows
+from identification.places.moving import may_move
 from identification.places.placed import PlacedEffect
 
 SHORT_LIST = 8
@@ -102,8 +103,24 @@ def _judged(base: Fit, score: Score, found: Fit, count: float) -> Evidence:
 
 
 def _refitted(base: Fit, score: Score, hopeless: float) -> Fit | None:
-    best = min((_attempt(base, score, start, hopeless) for start in _starts(base, score)), key=lambda one: one.cost)
+    found = [_attempt(base, score, start, hopeless) for start in _starts(base, score)]
+    count = effective_count(found[0].rows, min(found, key=lambda one: one.cost).residual)
+
+    def price(one: Fit) -> float:
+        return one.cost * count / one.rows.count + len(one.model.effects[-1].parameters()) * float(np.log(count))
+
+    best = min(found, key=price)
+    best = min([best, *_moved(best)], key=price)
     return None if _outside(best.model.effects[-1], best) else best
+
+
+def _moved(found: Fit) -> list[Fit]:
+    """Fits in which a further parameter of the effect changes over the range of p, from where it stands still."""
+    last, rest = found.model.effects[-1], found.model.effects[:-1]
+    points = np.concatenate([flow.setting.points for flow in found.flows])
+    moving = [replace(last, effect=one) for one in may_move(last.effect, points)]
+    models = [replace(found.model, effects=(*rest, one), joint_covariance=None) for one in moving]
+    return [fit(model, found.rows, iterations=13, tolerance=0.05, start=found.flows) for model in models]
 
 
 def _outside(one: PlacedEffect, found: Fit) -> bool:

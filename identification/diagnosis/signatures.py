@@ -72,7 +72,9 @@ def candidates(fit: Fit, effects: Sequence[Effect], degree: int = 0) -> tuple[Ca
 
 def _candidate(fit: Fit, effect: Effect, degree: int, space: FloatArray) -> Candidate:
     if not all(effect.judgeable(flow) for flow in fit.flows):
-        return Candidate(effect, (), why_not=RECORDS if effect.needs_records else LOGGED, judged=False)
+        return Candidate(
+            effect, (), why_not=effect.unjudged or (RECORDS if effect.needs_records else LOGGED), judged=False
+        )
     taken = _taken(effect, [one.effect for one in fit.model.effects])
     if taken:
         return Candidate(effect, (), why_not=taken, judged=False)

@@ -7,11 +7,12 @@ import numpy as np
 
 from identification.arrays import ComplexArray, FloatArray
 from identification.places.linear import Factor
+from identification.places.moving import RATIO, Moving
 from identification.places.place import FurtherParameter
 
 
 @dataclass(frozen=True)
-class Antiresonance(Factor):
+class Antiresonance(Moving, Factor):
     """Y = (1 − e 2jζω₀ω/(ω₀² − ω² + 2jζω₀ω)) G U.
 
     A damper or absorber that takes out the share e of the response at ω₀ = `frequency`, ζ = `damping`
@@ -29,7 +30,10 @@ class Antiresonance(Factor):
             "frequency", "frequency", (0.1, 0.2, 0.3, 0.4, 0.45, 0.5, 0.55, 0.6, 0.65, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95)
         ),
         FurtherParameter("damping", "number", (0.05, 0.3), highest=0.7),
+        RATIO,
     )
+
+    moves: ClassVar[str] = "frequency"
 
     frequency: float = 1.0
     damping: float = 0.2

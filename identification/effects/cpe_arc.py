@@ -6,6 +6,7 @@ from typing import ClassVar
 import numpy as np
 
 from identification.arrays import ComplexArray
+from identification.places.moving import RATIO
 from identification.places.place import FurtherParameter
 from identification.places.relaxation import TIME, Relaxation
 
@@ -22,6 +23,7 @@ class CpeArc(Relaxation):
     parameters: ClassVar[tuple[FurtherParameter, ...]] = (
         TIME,
         FurtherParameter("exponent", "number", (0.55, 0.75), lowest=0.4, highest=0.95),
+        RATIO,
     )
 
     exponent: float = 0.7

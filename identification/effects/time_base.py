@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
-from identification.places.linear import FrequencyAxis
+from identification.places.frequency_axis import FrequencyAxis
 
 
 @dataclass(frozen=True)

@@ -9,11 +9,12 @@ from identification.arrays import ComplexArray, FloatArray
 from identification.comparison.batch import EXCITED, Batch
 from identification.extension.rows import Rows, effect_tangents, plant_tangents
 from identification.models.model import Model
-from identification.places.linear import Coefficient, Factor, FrequencyAxis, Parallel
+from identification.places.core import Reshaped
+from identification.places.linear import Coefficient, Factor, Parallel
 from identification.places.place import Effect
 from identification.places.placed import PlacedEffect
 
-LINEAR = (Coefficient, Factor, FrequencyAxis, Parallel)
+LINEAR = (Coefficient, Factor, Parallel, Reshaped)
 
 
 @dataclass(frozen=True, eq=False)

@@ -222,9 +222,9 @@ def _jumps_at_zero(one: PlacedEffect, flow: Flow) -> bool:
     e = one.amplitude(flow.setting, flow.batch)
     omega = flow.batch.omega[1] * np.array([0.0, 1e-12, 1.0])
     if isinstance(one.effect, Factor):
-        still, near, lowest = one.effect.factor(e[0][:, None], omega)[0]
+        still, near, lowest = one.effect.factor_at(e, flow.setting.points, omega)[0]
     elif isinstance(one.effect, Parallel):
-        still, near, lowest = one.effect.response(e, omega)[0]
+        still, near, lowest = one.effect.response_at(e, flow.setting.points, omega)[0]
     else:
         return False
     return bool(abs(near - still) > 1e-3 * abs(lowest))

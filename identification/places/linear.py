@@ -1,19 +1,30 @@
 """Effects that act on the linear response.
 
-On the coefficients, on the axis of frequencies, as factor, in parallel.
+On the coefficients, as factor, in parallel.
 """
 
 from abc import abstractmethod
-from dataclasses import dataclass, replace
-from typing import ClassVar
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import ClassVar, Self, TypeVar
 
 import numpy as np
 
-from identification.arrays import ComplexArray, FloatArray
+from identification.arrays import BoolArray, ComplexArray, FloatArray
+from identification.models.rational import RationalStructure
 from identification.places.place import Effect, Flow, Setting
-from identification.signals import HeldInput
 
-STEP = 1e-4
+SMALLEST = 0.02
+
+Here = TypeVar("Here", bound=Effect)
+
+
+def each_point(effect: Here, points: FloatArray, compute: Callable[[Here, slice], ComplexArray]) -> ComplexArray:
+    """What `compute` gives (…, M, K) for an effect that differs between the scaled operating points (M, s)."""
+    found = effect.at(points)
+    if len(found) == 1:
+        return compute(found[0], slice(None))
+    return np.concatenate([compute(one, slice(m, m + 1)) for m, one in enumerate(found)], axis=-2)
 
 
 @dataclass(frozen=True)
@@ -36,9 +47,17 @@ class Factor(Effect):
 
     def tangent(self, e: FloatArray, flow: Flow) -> ComplexArray:
         """∂Y/∂e (1, M, K)."""
-        column, omega = e[0][:, None], flow.batch.omega
-        relative = self.slope(column, omega) / self.factor(column, omega)
-        return np.asarray((relative * flow.factored)[None])
+        points, omega = flow.setting.points, flow.batch.omega
+
+        def relative(one: Self, rows: slice) -> ComplexArray:
+            column = e[0][rows, None]
+            return np.asarray(one.slope(column, omega) / one.factor(column, omega))
+
+        return np.asarray((each_point(self, points, relative) * flow.factored)[None])
+
+    def factor_at(self, e: FloatArray, points: FloatArray, omega: FloatArray) -> ComplexArray:
+        """The factor (M, K) for e (shapes, M) at the scaled operating points (M, s)."""
+        return each_point(self, points, lambda one, rows: one.factor(e[0][rows, None], omega))
 
 
 @dataclass(frozen=True)
@@ -59,30 +78,15 @@ class Parallel(Effect):
         """Σ e_i s_i(ω) (M, K) for e (shapes, M)."""
         return np.asarray(e.T @ np.atleast_2d(self.shape(omega)))
 
+    def response_at(self, e: FloatArray, points: FloatArray, omega: FloatArray) -> ComplexArray:
+        """The response (M, K) for e (shapes, M) at the scaled operating points (M, s)."""
+        return each_point(self, points, lambda one, rows: one.response(e[:, rows], omega))
+
     def tangent(self, e: FloatArray, flow: Flow) -> ComplexArray:
         """∂Y/∂e (shapes, M, K)."""
-        shapes = np.atleast_2d(self.shape(flow.batch.omega))[:, None, :]
+        omega = flow.batch.omega
+        shapes = each_point(self, flow.setting.points, lambda one, _: np.atleast_2d(one.shape(omega))[:, None, :])
         return np.asarray(shapes * flow.passing * (flow.factor if self.within else 1.0))
-
-
-@dataclass(frozen=True)
-class FrequencyAxis(Effect):
-    """The plant answers as if all frequencies were (1 + e) times as high: Y = G((1 + e) ω) U."""
-
-    place: ClassVar[str] = "axis of frequencies"
-
-    def tangent(self, e: FloatArray, flow: Flow) -> ComplexArray:
-        """∂Y/∂e (1, M, K), from central differences along the axis."""
-        ends = [self.response(e[0] + step, flow.setting, flow.batch.omega, flow.held) for step in (STEP, -STEP)]
-        return np.asarray(((ends[0] - ends[1]) / (2 * STEP) * flow.drive * flow.factor)[None])
-
-    def response(self, e: FloatArray, setting: Setting, omega: FloatArray, held: HeldInput | None) -> ComplexArray:
-        """G((1 + e) ω) (M, K) for e (M,), as it is seen through the hold of the input."""
-        found = []
-        for zeta, change in zip(setting.zeta, e, strict=True):
-            stretched = None if held is None else replace(held, step=held.step / float(1 + change))
-            found.append(setting.structure.plant_response(zeta, omega * (1 + change), stretched))
-        return np.stack(found)
 
 
 @dataclass(frozen=True)
@@ -98,3 +102,22 @@ class Coefficient(Effect):
     def tangent(self, e: FloatArray, flow: Flow) -> ComplexArray:
         """∂Y/∂e (1, M, K)."""
         return np.asarray(np.einsum("mnk,mn->mk", flow.by_coefficients, self.direction(flow.setting))[None])
+
+
+@dataclass(frozen=True)
+class Divisor(Coefficient):
+    """Divides coefficients: ζ_i(p) = (T(p) θ)_i/(1 + e d(p)) for those that are `divided`."""
+
+    @abstractmethod
+    def divided(self, structure: RationalStructure) -> BoolArray:
+        """Which coefficients of the plant, (n_plant,)."""
+
+    def divisor(self, e: FloatArray, structure: RationalStructure) -> FloatArray:
+        """What they are divided by, (M, n_plant), for e d(p) (M,): never near zero."""
+        chosen = self.divided(structure)
+        return np.where(chosen, np.maximum(1 + e[:, None], SMALLEST), 1.0)
+
+    def direction(self, setting: Setting) -> FloatArray:
+        """−ζ_i of those that are divided: ∂ζ_i/∂e times the divisor."""
+        chosen = self.divided(setting.structure)
+        return np.asarray(-setting.zeta[:, : len(chosen)] * chosen)

@@ -24,17 +24,17 @@ class LinearPath:
     acts: bool
 
 
-def linear_path(acting: Sequence[tuple[Effect, FloatArray]], omega: FloatArray) -> LinearPath:
-    """The path of all effects with their amplitudes e (shapes, M) at frequencies ω ≥ 0 (K,)."""
+def linear_path(acting: Sequence[tuple[Effect, FloatArray]], points: FloatArray, omega: FloatArray) -> LinearPath:
+    """The path of all effects with their amplitudes e (shapes, M) at scaled points (M, s) and ω ≥ 0 (K,)."""
     factor, within, beside = (np.full((1, 1), one, dtype=np.complex128) for one in (1.0, 0.0, 0.0))
     acts = False
     for effect, e in acting:
         if isinstance(effect, Factor):
-            factor = factor * effect.factor(e[0][:, None], omega)
+            factor = factor * effect.factor_at(e, points, omega)
         elif isinstance(effect, Parallel) and effect.within:
-            within = within + effect.response(e, omega)
+            within = within + effect.response_at(e, points, omega)
         elif isinstance(effect, Parallel):
-            beside = beside + effect.response(e, omega)
+            beside = beside + effect.response_at(e, points, omega)
         acts = acts or isinstance(effect, Factor | Parallel)
     return LinearPath(factor, within, beside, acts)
 
@@ -49,11 +49,11 @@ def images(
     with h = P/T of the hold; factor f, modes w and paths b from `linear_path`, conjugate at negative frequencies.
     """
     found = np.zeros((len(setting.zeta), len(omega)), dtype=np.complex128)
-    here = linear_path(acting, omega)
+    here = linear_path(acting, setting.points, omega)
     for m in range(1, IMAGES + 1):
         for sign in (1, -1):
             image = omega + sign * m * 2 * np.pi / held.step
-            path = linear_path(acting, abs(image))
+            path = linear_path(acting, setting.points, abs(image))
             factor, within, beside = (
                 one if sign > 0 else one.conj() for one in (path.factor, path.within, path.beside)
             )

@@ -2,6 +2,7 @@
 
 import dataclasses
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import product
@@ -42,13 +43,15 @@ class Setting:
     """What the parameters give at the operating points of a batch.
 
     `zeta` (M, n); `points` (M, s) scaled to −1 … 1 over the range of the scheduling variables; `zeta_slope`
-    (M, n_plant, s): ∂ζ_G by the scaled scheduling variables.
+    (M, n_plant, s): ∂ζ_G by the scaled scheduling variables; `passed` (M, n_plant): ∂ζ_G by what T(p) θ gives, where
+    effects divide it, None: one.
     """
 
     structure: Structure
     zeta: FloatArray
     points: FloatArray
     zeta_slope: FloatArray
+    passed: FloatArray | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,7 +61,8 @@ class Flow:
     `setting.zeta` includes what effects change of it; `response` (M, K) of the plant core, `entry` (M, K) that as the
     input is seen through its hold; `entering` (M, K) the input behind the actuator; `drive` U (M, K) what enters the
     core, forces fed back included; `core` X (M, K) what leaves it; `factored` (M, K) that and the modes beside it,
-    times all factors; `linear` (M, K) after all that acts linearly; `output` (M, K).
+    times all factors; `linear` (M, K) after all that acts linearly; `output` (M, K). `acting`: the effects with their
+    amplitudes; `gradient`: of the core by ζ_G (M, n_plant, K), with True as the input is seen.
     """
 
     batch: Batch
@@ -72,18 +76,21 @@ class Flow:
     linear: ComplexArray
     output: ComplexArray
     factor: ComplexArray
+    acting: "tuple[tuple[Effect, FloatArray], ...]" = ()
+    gradient: "Callable[[bool], ComplexArray] | None" = None
     cache: dict[tuple[str, int], FloatArray] = field(default_factory=dict)
 
     @cached_property
     def by_coefficients(self) -> ComplexArray:
-        """∂`factored`/∂ζ_G (M, n_plant, K), that of modes beside the core left out."""
-        structure, zeta, omega = self.setting.structure, self.setting.zeta, self.batch.omega
-        gradient, drive = structure.plant_gradient(zeta, omega), self.drive * self.factor
-        if self.held is None:
-            return np.asarray(gradient * drive[:, None, :])
-        entering = self.entering * self.factor
-        seen = structure.plant_gradient(zeta, omega, self.held) * entering[:, None, :]
-        return np.asarray(seen + gradient * (drive - entering)[:, None, :])
+        """∂`factored`/∂ζ_G (M, n_plant, K), ζ_G before effects divide it; that of modes beside the core left out."""
+        assert self.gradient is not None
+        gradient, drive = self.gradient(False), self.drive * self.factor
+        if self.entry is self.response:
+            found = gradient * drive[:, None, :]
+        else:
+            entering = self.entering * self.factor
+            found = self.gradient(True) * entering[:, None, :] + gradient * (drive - entering)[:, None, :]
+        return np.asarray(found if self.setting.passed is None else found * self.setting.passed[:, :, None])
 
     @property
     def held(self) -> HeldInput | None:
@@ -159,7 +166,7 @@ class Effect(ABC):
     was measured, not in the plant; `oversampling` of the time grid on which a force is computed in continuous time;
     `shapes` the number of amplitudes; `states` by how many it raises the order of the plant, infinite for distributed
     effects such as a delay or diffusion; `unseen` says why an experiment does not show it where its signature
-    vanishes.
+    vanishes, `unjudged` why it was not looked for where it is not `judgeable`.
     """
 
     kind: ClassVar[str]
@@ -175,6 +182,7 @@ class Effect(ABC):
     shapes: ClassVar[int] = 1
     oversampling: ClassVar[int] = 2
     states: ClassVar[float] = 0
+    unjudged: ClassVar[str] = ""
     unseen: ClassVar[str] = "invisible in this experiment: the fitted parameters take up all that it changes"
     parameters: ClassVar[tuple[FurtherParameter, ...]] = ()
 
@@ -205,9 +213,17 @@ class Effect(ABC):
         """How many variants the data were searched for, where that is more than `variants` gives."""
         return 1
 
+    def at(self, points: FloatArray) -> list[Self]:
+        """The effect at each of the scaled operating points (M, s), or one that is the same at all of them."""
+        return [self]
+
+    def fixed(self, parameter: FurtherParameter) -> bool:
+        """Whether a further parameter is left as it is by a refit."""
+        return not parameter.fitted
+
     def fitted_names(self) -> tuple[str, ...]:
         """Further parameters that a refit adjusts."""
-        return tuple(parameter.name for parameter in self.parameters if parameter.fitted)
+        return tuple(parameter.name for parameter in self.parameters if not self.fixed(parameter))
 
     def values(self) -> FloatArray:
         """The values of the fitted further parameters."""
@@ -215,7 +231,7 @@ class Effect(ABC):
 
     def limits(self, flow: Flow) -> tuple[FloatArray, FloatArray]:
         """The physical range of the fitted further parameters."""
-        ranges = [_range(parameter, flow) for parameter in self.parameters if parameter.fitted]
+        ranges = [_range(parameter, flow) for parameter in self.parameters if not self.fixed(parameter)]
         low, high = np.array(ranges, dtype=np.float64).reshape(-1, 2).T
         return low, high
 

@@ -8,11 +8,11 @@ import numpy as np
 from identification.arrays import ComplexArray, FloatArray
 from identification.comparison.batch import Batch
 from identification.errors import MisuseError
-from identification.places.linear import Coefficient, FrequencyAxis
+from identification.places.core import Reshaped, core_gradient, core_response
+from identification.places.linear import Coefficient, Divisor
 from identification.places.linear_path import images, linear_path
 from identification.places.nonlinear import Actuator, Added, Feedback, Sensor
 from identification.places.place import Effect, Flow, Setting, derivative, passing
-from identification.signals import HeldInput
 
 Acting = tuple[Effect, FloatArray]
 Update = Callable[[ComplexArray], ComplexArray]
@@ -44,11 +44,12 @@ def simulate(
         raise MisuseError("effects that act on signals need periodic records", "effects")
     setting = _changed(setting, acting)
     held = None if setting.structure.is_discrete else batch.held
-    response = _response(setting, acting, batch, None)
-    entry = response if held is None else _response(setting, acting, batch, held)
+    response = core_response(setting, acting, batch.omega)
+    seen_otherwise = held is not None or any(isinstance(one, Reshaped) and one.on_entry for one, _ in acting)
+    entry = core_response(setting, acting, batch.omega, held, True) if seen_otherwise else response
     entering = _actuated(setting, acting, batch)
     core, drive = _core(response, entry, entering, acting, setting, batch, start, solve or fixed_point)
-    path, beside_drive = linear_path(acting, batch.omega), passing(drive, entering, batch.omega, held)
+    path, beside_drive = linear_path(acting, setting.points, batch.omega), passing(drive, entering, batch.omega, held)
     factored = path.factor * (core + path.within * beside_drive)
     linear = factored + path.beside * beside_drive
     if held is not None and path.acts:
@@ -66,22 +67,24 @@ def simulate(
         linear,
         output,
         path.factor * np.ones_like(core),
+        tuple(acting),
+        lambda seen: core_gradient(setting, acting, batch.omega, held if seen else None, seen),
     )
 
 
 def _changed(setting: Setting, acting: Sequence[Acting]) -> Setting:
-    zeta = setting.zeta.copy()
+    """The setting with what effects add to the coefficients, and then divide them by."""
+    zeta, n, structure = setting.zeta.copy(), setting.structure.n_plant, setting.structure
+    passed = None
     for effect, e in acting:
-        if isinstance(effect, Coefficient):
-            zeta[:, : setting.structure.n_plant] += e[0][:, None] * effect.direction(setting)
-    return dataclasses.replace(setting, zeta=zeta)
-
-
-def _response(setting: Setting, acting: Sequence[Acting], batch: Batch, held: HeldInput | None) -> ComplexArray:
+        if isinstance(effect, Coefficient) and not isinstance(effect, Divisor):
+            zeta[:, :n] += e[0][:, None] * effect.direction(setting)
     for effect, e in acting:
-        if isinstance(effect, FrequencyAxis):
-            return effect.response(e[0], setting, batch.omega, held)
-    return setting.structure.plant_response(setting.zeta, batch.omega, held)
+        if isinstance(effect, Divisor):
+            divisor = effect.divisor(e[0], structure)
+            zeta[:, :n] /= divisor
+            passed = 1 / divisor if passed is None else passed / divisor
+    return dataclasses.replace(setting, zeta=zeta, passed=passed)
 
 
 def _finer(setting: Setting, acting: Sequence[Acting], place: type[Actuator] | type[Feedback]) -> int:

@@ -1,0 +1,51 @@
+"""An input that is held between its samples, where the model takes it as band limited."""
+
+from dataclasses import dataclass, replace
+from typing import ClassVar, Self
+
+import numpy as np
+
+from identification.arrays import ComplexArray, FloatArray
+from identification.places.core import Plant, Reshaped
+from identification.places.place import Flow, Setting
+from identification.signals import HeldInput
+
+
+@dataclass(frozen=True)
+class InputHold(Reshaped):
+    """Y = (G + e (H − G)) U, H the response as it is seen through a zero-order hold of `step` seconds; e = 1: held.
+
+    At low frequencies it looks like a delay of half a sample. Only looked for where it was not said how the input runs
+    between its samples, and in continuous time [AstromWittenmark1997, (2.4)].
+    """
+
+    kind: ClassVar[str] = "input_hold"
+    title: ClassVar[str] = "input held between its samples"
+    place: ClassVar[str] = "how the input is seen"
+    unit: ClassVar[str] = "1"
+    source: ClassVar[str] = "[AstromWittenmark1997, (2.4)]"
+    sign: ClassVar[int] = 1
+    largest: ClassVar[float | None] = 1.5
+    of_measurements: ClassVar[bool] = True
+    on_entry: ClassVar[bool] = True
+    unjudged: ClassVar[str] = "how the input runs between its samples is stated, or no matter to these data"
+
+    step: float = 1.0
+
+    def reshaped(
+        self, e: FloatArray, plant: Plant, setting: Setting, omega: FloatArray, held: HeldInput | None
+    ) -> ComplexArray:
+        """G + e (H − G), (M, K) for e (M,)."""
+        smooth = plant(setting.zeta, omega, held)
+        seen = plant(setting.zeta, omega, HeldInput(self.step))
+        return np.asarray(smooth + e[:, None] * (seen - smooth))
+
+    def judgeable(self, flow: Flow) -> bool:
+        """Only for samples of a model in continuous time whose hold is not stated."""
+        structure = flow.setting.structure
+        sampled = flow.batch.sample_time is not None and not flow.batch.hold_stated
+        return sampled and not structure.is_discrete and structure.n_b <= structure.n_a
+
+    def variants(self, flow: Flow) -> list[Self]:
+        """The sample time of the batch."""
+        return [replace(self, step=float(flow.batch.sample_time or self.step))]

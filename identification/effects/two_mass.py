@@ -1,0 +1,92 @@
+"""A second mass behind a spring."""
+
+from dataclasses import dataclass, replace
+from typing import ClassVar, Self
+
+import numpy as np
+
+from identification.arrays import ComplexArray, FloatArray
+from identification.comparison.batch import Batch
+from identification.places.core import Plant, Reshaped
+from identification.places.place import Flow, FurtherParameter, Setting
+from identification.signals import HeldInput
+
+FREQUENCIES = (0.1, 0.2, 0.3, 0.4, 0.45, 0.5, 0.55, 0.6, 0.65, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95)
+
+
+@dataclass(frozen=True)
+class TwoMass(Reshaped):
+    """A mass e behind a spring and a damper, hung on to the output: Y = G U/(1 + e l(ω) G).
+
+        l(s) = s^{2−d} (1 + 2ζ s/ω_z)/(1 + 2ζ s/ω_z + (s/ω_z)²),   d = `order` of the output: 1 for a speed
+
+    ω_z = `frequency` is where the second mass holds the first still, ζ = `damping`; below it the masses move as one.
+    Where the mass grows with p, to `ratio` times at the upper end of what it is at the lower, e g(p) and ω_z²/g(p) with
+    g linear and one amid the range, pole and zero move together [Ljung1999, Section 4.2].
+    """
+
+    kind: ClassVar[str] = "two_mass"
+    title: ClassVar[str] = "second mass behind a spring"
+    domain: ClassVar[str] = "mechanical"
+    unit: ClassVar[str] = "input unit per output unit · s^(2 − d)"
+    source: ClassVar[str] = "[Ljung1999, Section 4.2]"
+    sign: ClassVar[int] = 1
+    states: ClassVar[float] = 2
+    unjudged: ClassVar[str] = "the model is in discrete time, where forces and masses have no place of their own"
+    parameters: ClassVar[tuple[FurtherParameter, ...]] = (
+        FurtherParameter("frequency", "frequency", FREQUENCIES),
+        FurtherParameter("damping", "number", (0.02, 0.15), highest=0.7),
+        FurtherParameter("ratio", "number", (1.0, 0.4, 2.5), lowest=0.02, highest=50.0),
+    )
+
+    frequency: float = 1.0
+    damping: float = 0.05
+    ratio: float = 1.0
+    variable: int = 0
+    order: int = 1
+
+    def growth(self, points: FloatArray) -> FloatArray:
+        """g (M,) at the scaled operating points (M, s)."""
+        return np.asarray(1 + (self.ratio - 1) / (self.ratio + 1) * points[:, self.variable])
+
+    def profile(self, setting: Setting, batch: Batch) -> FloatArray:
+        """g(p): how the mass grows."""
+        return self.growth(setting.points)
+
+    def load(self, points: FloatArray, omega: FloatArray) -> ComplexArray:
+        """l (M, K)."""
+        s = 1j * omega / (self.frequency / np.sqrt(self.growth(points)))[:, None]
+        carried = (1 + 2 * self.damping * s) / (1 + 2 * self.damping * s + s**2)
+        return np.asarray((1j * omega) ** (2 - self.order) * carried)
+
+    def reshaped(
+        self, e: FloatArray, plant: Plant, setting: Setting, omega: FloatArray, held: HeldInput | None
+    ) -> ComplexArray:
+        """G/(1 + e l G) (M, K) for e (M,)."""
+        alone = plant(setting.zeta, omega, None)
+        with np.errstate(invalid="ignore"):
+            loop = np.where(omega > 0, e[:, None] * self.load(setting.points, omega) * alone, 0.0)
+        seen = alone if held is None else plant(setting.zeta, omega, held)
+        return np.asarray(seen / (1 + loop))
+
+    def small(self, flow: Flow) -> float:
+        """A thousandth of the mass that counts as much as the plant."""
+        moving = flow.batch.omega > 0
+        loop = self.load(flow.setting.points, flow.batch.omega[moving]) * flow.response[:, moving]
+        return float(1e-3 / max(abs(loop).max(), 1e-300))
+
+    def fixed(self, parameter: FurtherParameter) -> bool:
+        """A mass that does not grow is left so by a refit."""
+        return parameter.name == "ratio" and self.ratio == 1.0
+
+    def judgeable(self, flow: Flow) -> bool:
+        """Only in continuous time."""
+        return not flow.setting.structure.is_discrete
+
+    def variants(self, flow: Flow) -> list[Self]:
+        """The grid of the further parameters; growing masses for each scheduling variable that changes."""
+        found = super().variants(flow)
+        still = [one for one in found if one.ratio == 1.0]
+        moved = [one for one in found if one.ratio != 1.0]
+        variables = np.flatnonzero(np.ptp(flow.setting.points, axis=0) > 0)
+        return [*still, *(replace(one, variable=int(s)) for one in moved for s in variables)]
