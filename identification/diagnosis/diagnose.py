@@ -108,7 +108,7 @@ def diagnose(
     scores = score_tests(base, [one for one in judged if one.signatures], np.random.default_rng(seed))
     ordered = tuple(sorted(scores, key=lambda one: (one.adjusted_p, one.p_value, -one.statistic)))
     missing = bool(ordered) and ordered[0].adjusted_p < LEVEL
-    evidence = refit_short_list(base, ordered) if missing else ()
+    evidence = refit_short_list(base, ordered, origin=model) if missing else ()
     announced = indistinguishable(evidence) if evidence and evidence[0].bic < base.cost else ()
     remaining = misfit("remaining lack of fit", announced[0].fit) if announced else before
     share = _explained_share(base, announced)

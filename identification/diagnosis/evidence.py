@@ -6,9 +6,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from identification.arrays import FloatArray
+from identification.diagnosis.scans import misfit_is_large, scanned_starts, states_scan
 from identification.diagnosis.scores import Score
 from identification.extension.fit import Fit, fit
 from identification.extension.rows import Rows
+from identification.models.model import Model
 from identification.places.moving import may_move
 from identification.places.placed import PlacedEffect
 
@@ -40,19 +42,26 @@ class Evidence:
         return self.explained / self.parameters
 
 
-def refit_short_list(base: Fit, scores: Sequence[Score], length: int = SHORT_LIST) -> tuple[Evidence, ...]:
+def refit_short_list(
+    base: Fit, scores: Sequence[Score], length: int = SHORT_LIST, origin: Model | None = None
+) -> tuple[Evidence, ...]:
     """θ and each of the effects of largest score together, from several starts, with their weights, best first.
 
         BIC = −2 ln L + (number of parameters) ln R,   weight ∝ exp(−BIC/2)
 
     Further parameters that are searched but not fitted cost 2 ln(number of variants). Where the size of the noise is
-    not known, R is the effective number of residuals of the best refit, and ln L is that of so many.
+    not known, R is the effective number of residuals of the best refit, and ln L is that of so many. Where much is
+    missing, effects that state a scan are on the list in any case and begin from the best of it too; `origin`: the
+    model as it was given, around which it is made.
     """
-    ordered = sorted(scores, key=lambda score: -score.statistic)[:length]
+    ordered = sorted(scores, key=lambda score: -score.statistic)
+    large = misfit_is_large(base)
+    scanned = {id(score) for score in ordered if large and states_scan(score.candidate.effect)}
+    ordered = [score for i, score in enumerate(ordered) if i < length or id(score) in scanned]
     found: list[tuple[Score, Fit]] = []
     least = np.inf
     for score in ordered:
-        one = _refitted(base, score, least + HOPELESS)
+        one = _refitted(base, score, least + HOPELESS, origin if id(score) in scanned else None)
         if one is not None:
             found.append((score, one))
             least = min(least, float(one.residual @ one.residual))
@@ -102,8 +111,12 @@ def _judged(base: Fit, score: Score, found: Fit, count: float) -> Evidence:
     return Evidence(score, found, explained, parameters, float(bic))
 
 
-def _refitted(base: Fit, score: Score, hopeless: float) -> Fit | None:
+def _refitted(base: Fit, score: Score, hopeless: float, origin: Model | None) -> Fit | None:
     found = [_attempt(base, score, start, hopeless) for start in _starts(base, score)]
+    if origin is not None:
+        one = score.signature.placed
+        starts = scanned_starts(base, origin, one.effect, one.degree)
+        found += [fit(start, base.rows, iterations=13, tolerance=0.05) for start in starts]
     count = effective_count(found[0].rows, min(found, key=lambda one: one.cost).residual)
 
     def price(one: Fit) -> float:

@@ -26,7 +26,6 @@ class InputHold(Reshaped):
     source: ClassVar[str] = "[AstromWittenmark1997, (2.4)]"
     sign: ClassVar[int] = 1
     largest: ClassVar[float | None] = 1.5
-    of_measurements: ClassVar[bool] = True
     on_entry: ClassVar[bool] = True
     unjudged: ClassVar[str] = "how the input runs between its samples is stated, or no matter to these data"
 

@@ -1,5 +1,6 @@
 """A second mass behind a spring."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import ClassVar, Self
 
@@ -18,11 +19,11 @@ FREQUENCIES = (0.1, 0.2, 0.3, 0.4, 0.45, 0.5, 0.55, 0.6, 0.65, 0.7, 0.75, 0.8, 0
 class TwoMass(Reshaped):
     """A mass e behind a spring and a damper, hung on to the output: Y = G U/(1 + e l(ω) G).
 
-        l(s) = s^{2−d} (1 + 2ζ s/ω_z)/(1 + 2ζ s/ω_z + (s/ω_z)²),   d = `order` of the output: 1 for a speed
+        l(s) = s^{2−d} (1 + 2ζ s/ω_z)/(1 + 2ζ s/ω_z + g(p) (s/ω_z)²),   d = `order` of the output: 1 for a speed
 
     ω_z = `frequency` is where the second mass holds the first still, ζ = `damping`; below it the masses move as one.
-    Where the mass grows with p, to `ratio` times at the upper end of what it is at the lower, e g(p) and ω_z²/g(p) with
-    g linear and one amid the range, pole and zero move together [Ljung1999, Section 4.2].
+    Where the mass grows with p, to `ratio` times at the upper end of what it is at the lower, it is e g(p), g linear and
+    one amid the range, and pole and zero move together [Ljung1999, Section 4.2].
     """
 
     kind: ClassVar[str] = "two_mass"
@@ -55,8 +56,9 @@ class TwoMass(Reshaped):
 
     def load(self, points: FloatArray, omega: FloatArray) -> ComplexArray:
         """l (M, K)."""
-        s = 1j * omega / (self.frequency / np.sqrt(self.growth(points)))[:, None]
-        carried = (1 + 2 * self.damping * s) / (1 + 2 * self.damping * s + s**2)
+        s = 1j * omega / self.frequency
+        held = 1 + 2 * self.damping * s
+        carried = held / (held + self.growth(points)[:, None] * s**2)
         return np.asarray((1j * omega) ** (2 - self.order) * carried)
 
     def reshaped(
@@ -74,6 +76,16 @@ class TwoMass(Reshaped):
         moving = flow.batch.omega > 0
         loop = self.load(flow.setting.points, flow.batch.omega[moving]) * flow.response[:, moving]
         return float(1e-3 / max(abs(loop).max(), 1e-300))
+
+    def scan(self, flows: Sequence[Flow]) -> list[tuple[Self, float]]:
+        """Masses from a fifth to twice of what counts as much as the plant at ω_z."""
+        found = []
+        for one in self.variants(flows[0]):
+            if one.damping == self.parameters[1].values[0]:
+                near = [abs(f.response[:, np.argmin(abs(f.batch.omega - one.frequency))]) for f in flows]
+                equal = float(1 / (one.frequency ** (2 - self.order) * np.median(np.concatenate(near))))
+                found += [(one, share * equal) for share in (0.2, 0.6, 2.0)]
+        return found
 
     def fixed(self, parameter: FurtherParameter) -> bool:
         """A mass that does not grow is left so by a refit."""

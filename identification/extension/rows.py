@@ -1,7 +1,7 @@
 """Residuals and tangents of a model over several batches, whitened."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -9,6 +9,7 @@ from identification.arrays import ComplexArray, FloatArray
 from identification.comparison.batch import Batch
 from identification.comparison.noise import noise_freedom
 from identification.models.model import Model
+from identification.places.core import Reshaped
 from identification.places.place import Effect, Flow
 from identification.places.placed import PlacedEffect, amplitude_basis
 
@@ -83,15 +84,19 @@ def _by_amplitudes(effect: Effect, one: PlacedEffect, flow: Flow) -> ComplexArra
 
 
 def _by_further(one: PlacedEffect, name: str, flows: Sequence[Flow]) -> list[ComplexArray]:
-    """∂Ŷ/∂ ln η, (1, M, K) a batch: Σ c_ij ∂t_ij/∂ ln η, as all effects with further parameters are linear in e."""
+    """∂Ŷ/∂ ln η, (1, M, K) a batch: Σ c_ij ∂t_ij/∂ ln η where effects are linear in e, all but those that reshape."""
     names = one.effect.fitted_names()
     values = one.effect.values()
     changed = []
     for sign in (1, -1):
         moved = np.where(np.array(names) == name, values * np.exp(sign * FURTHER_STEP), values)
         effect = one.effect.with_values(moved)
-        changed.append([_by_amplitudes(effect, one, flow) for flow in flows])
-    weights = one.coefficients.ravel()
+        if isinstance(effect, Reshaped):
+            placed = replace(one, effect=effect)
+            changed.append([effect.seen(placed.amplitude(flow.setting, flow.batch), flow)[None] for flow in flows])
+        else:
+            changed.append([_by_amplitudes(effect, one, flow) for flow in flows])
+    weights = np.ones(1) if isinstance(one.effect, Reshaped) else one.coefficients.ravel()
     return [
         np.tensordot(weights, (up - down) / (2 * FURTHER_STEP), axes=1)[None] for up, down in zip(*changed, strict=True)
     ]

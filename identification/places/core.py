@@ -35,15 +35,17 @@ class Reshaped(Effect):
 
     def tangent(self, e: FloatArray, flow: Flow) -> ComplexArray:
         """∂Y/∂e (1, M, K), from central differences of Ĝ."""
-        step, others = self.small(flow), [one for one in flow.acting if one[0].kind != self.kind]
+        step = self.small(flow)
+        return np.asarray(((self.seen(e + step, flow) - self.seen(e - step, flow)) / (2 * step))[None])
+
+    def seen(self, e: FloatArray, flow: Flow) -> ComplexArray:
+        """What leaves the path (M, K) at the amplitude e (1, M), the forces in the loop as they are."""
+        acting = [*(one for one in flow.acting if one[0].kind != self.kind), (self, e)]
         forces = flow.entering - flow.drive
-        ends = []
-        for sign in (1, -1):
-            acting = [*others, (self, e + sign * step)]
-            entry = core_response(flow.setting, acting, flow.batch.omega, flow.held, True)
-            inner = core_response(flow.setting, acting, flow.batch.omega) * forces if np.any(forces) else 0.0
-            ends.append(entry * flow.entering - inner)
-        return np.asarray(((ends[0] - ends[1]) / (2 * step) * flow.factor)[None])
+        core = core_response(flow.setting, acting, flow.batch.omega, flow.held, True) * flow.entering
+        if np.any(forces):
+            core = core - core_response(flow.setting, acting, flow.batch.omega) * forces
+        return np.asarray(core * flow.factor)
 
 
 def core_response(

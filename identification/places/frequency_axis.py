@@ -21,8 +21,9 @@ class FrequencyAxis(Reshaped):
         self, e: FloatArray, plant: Plant, setting: Setting, omega: FloatArray, held: HeldInput | None
     ) -> ComplexArray:
         """G((1 + e) ω) (M, K) for e (M,), as it is seen through the hold of the input."""
-        found = []
-        for zeta, change in zip(setting.zeta, e, strict=True):
+        found = np.empty((len(e), len(omega)), dtype=np.complex128)
+        for change in np.unique(e):
             stretched = None if held is None else replace(held, step=held.step / float(1 + change))
-            found.append(plant(zeta[None], omega * (1 + change), stretched)[0])
-        return np.stack(found)
+            rows = e == change
+            found[rows] = plant(setting.zeta, omega * (1 + change), stretched)[rows]
+        return found

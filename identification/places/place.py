@@ -2,7 +2,7 @@
 
 import dataclasses
 from abc import ABC, abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import product
@@ -208,6 +208,10 @@ class Effect(ABC):
         names = [parameter.name for parameter in self.parameters]
         grids = [[flow.scale(p.quantity, value) for value in p.values] for p in self.parameters]
         return [dataclasses.replace(self, **dict(zip(names, values, strict=True))) for values in product(*grids)]
+
+    def scan(self, flows: Sequence[Flow]) -> list[tuple[Self, float]]:
+        """Variants with amplitudes that are not small, to begin a refit with; none where small ones lead there."""
+        return []
 
     def looked_at(self, flow: Flow) -> int:
         """How many variants the data were searched for, where that is more than `variants` gives."""
