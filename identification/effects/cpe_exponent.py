@@ -6,7 +6,8 @@ from typing import ClassVar, Self
 import numpy as np
 
 from identification.arrays import ComplexArray, FloatArray
-from identification.models.rational import RationalStructure, roots
+from identification.models.rational import roots
+from identification.models.structure import Structure
 from identification.places.core import Plant, Reshaped
 from identification.places.place import Flow, Setting
 from identification.signals import HeldInput
@@ -45,9 +46,9 @@ class CpeExponent(Reshaped):
             change.append(resistance * (depressed - 1 / (1 + x / q)) if q > 0 else depressed)
         return np.asarray(found + np.array(change))
 
-    def _element(self, structure: RationalStructure, zeta: FloatArray) -> tuple[float, float]:
+    def _element(self, structure: Structure, zeta: FloatArray) -> tuple[float, float]:
         """q and R; zeros where the pole is not real and stable."""
-        a, b, _, _, _ = structure.split(zeta)
+        a, b = _polynomials(structure, zeta)
         pole = sorted(roots(a), key=abs)[self.arc]
         if abs(pole.imag) > 1e-9 * abs(pole) or pole.real >= 0:
             return 0.0, 0.0
@@ -57,8 +58,15 @@ class CpeExponent(Reshaped):
     def judgeable(self, flow: Flow) -> bool:
         """Only in continuous time, with poles and without a delay."""
         structure = flow.setting.structure
-        return not structure.is_discrete and structure.n_a > 0 and not structure.delay
+        letters = {name[0] for name in structure.coefficient_names[: structure.n_plant]}
+        return not structure.is_discrete and letters == {"a", "b"}
 
     def variants(self, flow: Flow) -> list[Self]:
         """Every pole, slowest first."""
-        return [replace(self, arc=i) for i in range(flow.setting.structure.n_a)]
+        return [replace(self, arc=i) for i in range(flow.setting.structure.order)]
+
+
+def _polynomials(structure: Structure, zeta: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """a_1 … and b_0 … by their names."""
+    letters = np.array([name[0] for name in structure.coefficient_names])
+    return zeta[letters == "a"], zeta[letters == "b"]

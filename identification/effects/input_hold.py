@@ -6,6 +6,7 @@ from typing import ClassVar, Self
 import numpy as np
 
 from identification.arrays import ComplexArray, FloatArray
+from identification.errors import MisuseError
 from identification.places.core import Plant, Reshaped
 from identification.places.place import Flow, Setting
 from identification.signals import HeldInput
@@ -42,8 +43,13 @@ class InputHold(Reshaped):
     def judgeable(self, flow: Flow) -> bool:
         """Only for samples of a model in continuous time whose hold is not stated."""
         structure = flow.setting.structure
-        sampled = flow.batch.sample_time is not None and not flow.batch.hold_stated
-        return sampled and not structure.is_discrete and structure.n_b <= structure.n_a
+        if flow.batch.sample_time is None or flow.batch.hold_stated or structure.is_discrete:
+            return False
+        try:
+            structure.plant_response(flow.setting.zeta, flow.batch.omega[1:2], HeldInput(flow.batch.sample_time))
+        except MisuseError:
+            return False
+        return True
 
     def variants(self, flow: Flow) -> list[Self]:
         """The sample time of the batch."""

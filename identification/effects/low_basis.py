@@ -7,11 +7,11 @@ import numpy as np
 
 from identification.arrays import BoolArray, FloatArray
 from identification.comparison.batch import Batch
-from identification.models.rational import RationalStructure
+from identification.models.structure import Structure
 from identification.places.linear import Divisor
 from identification.places.place import Flow, Setting
 
-ALL = -1
+ALL, DELAY = -1, "tau"
 
 
 @dataclass(frozen=True)
@@ -28,18 +28,22 @@ class LowBasis(Divisor):
     unit: ClassVar[str] = "1"
     source: ClassVar[str] = "[Toth2010, Chapter 3]"
     largest: ClassVar[float | None] = 0.98
+    unjudged: ClassVar[str] = "the coefficients of the model are entries of matrices, which say nothing one by one"
     unseen: ClassVar[str] = "invisible in this experiment: it needs more operating points than the bases have functions"
 
     coefficient: int = ALL
     variable: int = 0
     degree: int = 1
 
-    def divided(self, structure: RationalStructure) -> BoolArray:
+    def divided(self, structure: Structure) -> BoolArray:
         """The coefficient, or all but a delay."""
-        places = np.arange(structure.n_plant)
-        if self.coefficient == ALL:
-            return np.asarray(places < structure.n_plant - structure.delay)
-        return np.asarray(places == self.coefficient)
+        if self.coefficient != ALL:
+            return np.asarray(np.arange(structure.n_plant) == self.coefficient)
+        return np.array([name != DELAY for name in structure.coefficient_names[: structure.n_plant]])
+
+    def judgeable(self, flow: Flow) -> bool:
+        """Only where every coefficient has a basis of its own, and a meaning: not for the entries of matrices."""
+        return all(len(group.entries) == 1 for group in flow.setting.structure.groups)
 
     def profile(self, setting: Setting, batch: Batch) -> FloatArray:
         """P_d(p̃)."""
@@ -48,7 +52,7 @@ class LowBasis(Divisor):
 
     def variants(self, flow: Flow) -> list[Self]:
         """All coefficients at once and every one alone, every scheduling variable; degree 2 for all at once."""
-        structure, variables = flow.setting.structure, flow.setting.points.shape[1]
-        one_by_one = range(structure.n_plant - structure.delay)
-        chosen = [(ALL, 1), (ALL, 2), *((i, 1) for i in one_by_one)]
+        variables = flow.setting.points.shape[1]
+        one_by_one = np.flatnonzero(self.divided(flow.setting.structure))
+        chosen = [(ALL, 1), (ALL, 2), *((int(i), 1) for i in one_by_one)]
         return [replace(self, coefficient=i, degree=d, variable=s) for i, d in chosen for s in range(variables)]

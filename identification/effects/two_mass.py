@@ -22,8 +22,8 @@ class TwoMass(Reshaped):
         l(s) = s^{2−d} (1 + 2ζ s/ω_z)/(1 + 2ζ s/ω_z + g(p) (s/ω_z)²),   d = `order` of the output: 1 for a speed
 
     ω_z = `frequency` is where the second mass holds the first still, ζ = `damping`; below it the masses move as one.
-    Where the mass grows with p, to `ratio` times at the upper end of what it is at the lower, it is e g(p), g linear and
-    one amid the range, and pole and zero move together [Ljung1999, Section 4.2].
+    Where the mass grows with p, to `ratio` times at the upper end of what it is at the lower, it is e g(p), g linear
+    and one amid the range, and pole and zero move together [Ljung1999, Section 4.2].
     """
 
     kind: ClassVar[str] = "two_mass"

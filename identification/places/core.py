@@ -8,7 +8,6 @@ from typing import ClassVar
 import numpy as np
 
 from identification.arrays import ComplexArray, FloatArray
-from identification.models.hold import held_gradient, held_response
 from identification.places.place import Effect, Flow, Setting
 from identification.signals import HeldInput
 
@@ -62,7 +61,7 @@ def core_response(
     structure = setting.structure
 
     def plain(zeta: FloatArray, omega: FloatArray, held: HeldInput | None) -> ComplexArray:
-        return held_response(structure, zeta, omega, held)
+        return structure.plant_response(zeta, omega, held)
 
     plant: Plant = plain
     for effect, e in acting:
@@ -88,7 +87,7 @@ def core_gradient(
     """∂Ĝ/∂ζ_G (M, n_plant, K): exact, or by central differences where effects reshape the plant."""
     reshaping = [one for one in acting if isinstance(one[0], Reshaped) and (entry or not one[0].on_entry)]
     if not reshaping:
-        return held_gradient(setting.structure, setting.zeta, omega, held)
+        return setting.structure.plant_gradient(setting.zeta, omega, held)
     columns = []
     for i in range(setting.structure.n_plant):
         sizes = abs(setting.zeta[:, i])

@@ -11,7 +11,7 @@ from typing import ClassVar, Self, TypeVar
 import numpy as np
 
 from identification.arrays import BoolArray, ComplexArray, FloatArray
-from identification.models.rational import RationalStructure
+from identification.models.structure import Structure
 from identification.places.place import Effect, Flow, Setting
 
 SMALLEST = 0.02
@@ -109,10 +109,10 @@ class Divisor(Coefficient):
     """Divides coefficients: ζ_i(p) = (T(p) θ)_i/(1 + e d(p)) for those that are `divided`."""
 
     @abstractmethod
-    def divided(self, structure: RationalStructure) -> BoolArray:
+    def divided(self, structure: Structure) -> BoolArray:
         """Which coefficients of the plant, (n_plant,)."""
 
-    def divisor(self, e: FloatArray, structure: RationalStructure) -> FloatArray:
+    def divisor(self, e: FloatArray, structure: Structure) -> FloatArray:
         """What they are divided by, (M, n_plant), for e d(p) (M,): never near zero."""
         chosen = self.divided(structure)
         return np.where(chosen, np.maximum(1 + e[:, None], SMALLEST), 1.0)
