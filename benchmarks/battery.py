@@ -19,7 +19,7 @@ from identification.bases.polynomial import Polynomial
 from identification.comparison.gather import gather
 from identification.diagnosis.staircase import Step, staircase
 from identification.effects.library import library
-from identification.estimates import LocalEstimate, LpvEstimate
+from identification.estimates import Estimate, LocalEstimate
 from identification.lpv.generalised_least_squares import GeneralisedLeastSquares
 from identification.lpv.joint_likelihood import JointLikelihood
 from identification.lti.rational_fit import RationalFit, relative_error
@@ -63,13 +63,13 @@ def dependence(structure: RationalStructure, degree: int) -> ParameterDependence
 
 def varying(
     structure: RationalStructure, data: list[FrequencyResponse], local: list[LocalEstimate], degree: int, joint: bool
-) -> LpvEstimate:
+) -> Estimate:
     """The parameter-varying model, in two steps or by joint likelihood."""
     estimator = JOINT if joint else GeneralisedLeastSquares()
     return estimator.estimate(structure, dependence(structure, degree), data, tuple(local))
 
 
-def errors(estimate: LpvEstimate, data: list[FrequencyResponse]) -> list[float]:
+def errors(estimate: Estimate, data: list[FrequencyResponse]) -> list[float]:
     """Relative error of a parameter-varying model at each operating point."""
     model = estimate.model
     zeta = model.coefficients(np.array([one.operating_point for one in data]))

@@ -14,7 +14,7 @@ import numpy as np
 from benchmarks.command import command_line, write_json
 from benchmarks.ghosh_example import ACCEPTED, DEPENDENCE, DEVIATIONS, GRID, STRUCTURE, THETA, measured
 from benchmarks.processes import spread
-from identification.estimates import LpvEstimate
+from identification.estimates import Estimate
 from identification.lpv.generalised_least_squares import GeneralisedLeastSquares
 from identification.lpv.joint_likelihood import JointLikelihood
 from identification.lti.prediction_error import PredictionError
@@ -74,17 +74,17 @@ def _problem(first: Model) -> DesignProblem:
     )
 
 
-def _two_step(records: list[TimeRecord], prior: Model | None) -> LpvEstimate:
+def _two_step(records: list[TimeRecord], prior: Model | None) -> Estimate:
     estimator = PredictionError("zero")
     local = [estimator.estimate(STRUCTURE, record) for record in records]
     return GeneralisedLeastSquares().estimate(STRUCTURE, DEPENDENCE, records, local, prior)
 
 
-def _joint(records: list[TimeRecord], prior: Model) -> LpvEstimate:
+def _joint(records: list[TimeRecord], prior: Model) -> Estimate:
     return JointLikelihood("zero").estimate(STRUCTURE, DEPENDENCE, records, prior=prior)
 
 
-def _described(found: Design, two_step: LpvEstimate, joint: LpvEstimate, seconds: float) -> Run:
+def _described(found: Design, two_step: Estimate, joint: Estimate, seconds: float) -> Run:
     errors = [each.model.theta - THETA for each in (two_step, joint)]
     asked = [float(np.sum((error / DEVIATIONS) ** 2)) for error in errors]
     covariances = [each.model.covariance for each in (two_step, joint)]

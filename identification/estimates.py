@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from identification.models.model import LocalModel, Model
 from identification.outcome import Outcome, TestResult
+from identification.signals import Measurement
 
 
 @dataclass(frozen=True, eq=False)
@@ -17,10 +18,11 @@ class LocalEstimate:
 
 
 @dataclass(frozen=True, eq=False)
-class LpvEstimate:
-    """A parameter-varying model with its outcome, tests, and the local estimates that it stands on (may be empty)."""
+class Estimate:
+    """A model with its outcome and tests; `local` estimates that it stands on, and what each was `fitted` to."""
 
     model: Model
     outcome: Outcome
     tests: tuple[TestResult, ...]
-    local: tuple[LocalEstimate, ...]
+    local: tuple[LocalEstimate, ...] = ()
+    fitted: tuple[Measurement, ...] = ()

@@ -63,7 +63,7 @@ def inspect(measurement: TimeRecord | FrequencyResponse) -> RecordInspection | R
     outputs are judged by the Frobenius norms of their matrices.
     """
     if isinstance(measurement, TimeRecord):
-        return _inspect_record(measurement)
+        return inspect_record(measurement)
     return _inspect_response(measurement)
 
 
@@ -85,7 +85,8 @@ def find_period(u: FloatArray) -> int | None:
     return next((int(lag) for lag in likely if np.all(abs(u[lag:] - u[:-lag]) <= tolerance)), None)
 
 
-def _inspect_record(record: TimeRecord) -> RecordInspection:
+def inspect_record(record: TimeRecord) -> RecordInspection:
+    """The same of a record."""
     u, y = record.input, record.output
     for name, signal in (("input", u), ("output", y)):
         if not signal.any():

@@ -9,7 +9,7 @@ from scipy.linalg import qr, solve_triangular
 
 from identification.arrays import FloatArray
 from identification.errors import MisuseError, NotIdentifiableError, ShapeError
-from identification.estimates import LocalEstimate, LpvEstimate
+from identification.estimates import Estimate, LocalEstimate
 from identification.lpv.stacking import (
     asymptotics_advice,
     instability_advice,
@@ -45,7 +45,7 @@ class GeneralisedLeastSquares:
         experiments: Sequence[Measurement],
         local: Sequence[LocalEstimate],
         prior: Model | None = None,
-    ) -> LpvEstimate:
+    ) -> Estimate:
         """The parameter-varying model of M experiments and their local estimates, in the same order.
 
         `prior`, an estimate from other experiments, is combined with these as in [Ghosh2018, (13)]. The tests hold the
@@ -63,7 +63,7 @@ class GeneralisedLeastSquares:
         noise_variance = float(np.mean([estimate.model.noise_variance for estimate in local]))
         model = Model(structure, dependence, theta, covariance, noise_variance)
         tests = (stack.overall(theta), *_by_coefficient(structure, dependence, points, local), *stack.by_point(theta))
-        return LpvEstimate(model, _outcome(model, points, experiments), tests, tuple(local))
+        return Estimate(model, _outcome(model, points, experiments), tests, tuple(local))
 
     @classmethod
     def example(cls) -> "GeneralisedLeastSquares":

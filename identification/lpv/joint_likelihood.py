@@ -8,7 +8,7 @@ import numpy as np
 
 from identification.arrays import FloatArray
 from identification.errors import MisuseError, NotIdentifiableError
-from identification.estimates import LocalEstimate, LpvEstimate
+from identification.estimates import Estimate, LocalEstimate
 from identification.initial_conditions import InitialConditions, fitted_record
 from identification.least_squares import LeastSquaresSolution, is_singular, levenberg_marquardt
 from identification.likelihood import require_same_sampling
@@ -68,7 +68,7 @@ class JointLikelihood:
         experiments: Sequence[Measurement],
         local: Sequence[LocalEstimate] = (),
         prior: Model | None = None,
-    ) -> LpvEstimate:
+    ) -> Estimate:
         """The parameter-varying model of M experiments; local estimates, as many as there are, only help to start.
 
         `prior`, an estimate from other experiments, adds the rows S (θ − θ̂_1) with P_θ1⁻¹ = SᵀS [Ghosh2018, (13)].
@@ -97,7 +97,7 @@ class JointLikelihood:
         covariance = solution.covariance if determined else np.full((dependence.size, dependence.size), np.inf)
         model = Model(structure, dependence, solution.x, covariance, residuals.reported_variance(variances))
         tests = joint_tests(residuals, solution) if determined else ()
-        return LpvEstimate(model, outcome, tests, tuple(local))
+        return Estimate(model, outcome, tests, tuple(local))
 
     def _fitted(self, structure: RationalStructure, data: Measurement) -> Measurement:
         return fitted_record(structure, data, self.initial_conditions)[1] if isinstance(data, TimeRecord) else data

@@ -9,6 +9,7 @@ import numpy as np
 
 from identification.arrays import BoolArray, ComplexArray, FloatArray
 from identification.errors import MisuseError
+from identification.scheduling import ParameterDependence, ProductBasis, SchedulingVariable
 from identification.signals import HeldInput
 
 NOT_ALONG = "only models in discrete time without an estimated delay are simulated along p(t)"
@@ -50,6 +51,23 @@ class Structure(ABC):
     @abstractmethod
     def order(self) -> int:
         """n_x, the number of poles."""
+
+    def over(
+        self, variables: tuple[SchedulingVariable, ...], basis: ProductBasis | None = None, **own: ProductBasis
+    ) -> ParameterDependence:
+        """How the coefficients depend on scheduling variables: all by `basis`, but those of a named group by its own.
+
+        Raises MisuseError for a group that there is not, or one without a basis.
+        """
+        unknown = sorted(set(own) - {group.name for group in self.groups})
+        if unknown:
+            names = ", ".join(group.name for group in self.groups)
+            raise MisuseError(f"{', '.join(unknown)} is no group of coefficients; there are {names}", unknown[0])
+        bases = [own.get(group.name, basis) for group in self.groups]
+        if None in bases:
+            raise MisuseError("some coefficients have no basis; give one for all that have none of their own", "basis")
+        entries = tuple(len(group.entries) for group in self.groups)
+        return ParameterDependence(variables, tuple(one for one in bases if one is not None), entries)
 
     @property
     def outputs(self) -> int:

@@ -10,13 +10,12 @@ from identification.affine_state_space import AffineStateSpace
 from identification.arrays import FloatArray
 from identification.bases.polynomial import Polynomial
 from identification.errors import MisuseError
-from identification.models.chart import gauge_tangent, perpendicular
 from identification.models.model import Model
-from identification.models.state_space import StateSpaceStructure
+from identification.models.state_space_model import state_space_model
 from identification.outcome import Outcome
 from identification.places.linear import Coefficient
 from identification.places.placed import PlacedEffect
-from identification.scheduling import ParameterDependence, ProductBasis
+from identification.scheduling import ProductBasis
 from identification.varying.affine_parameters import AffineSizes
 
 ROUNDS, BALANCED = 60, 1e-13
@@ -83,23 +82,29 @@ def frozen(estimate: AffineEstimate, effects: tuple[PlacedEffect, ...] = (), joi
             "model",
         )
     basis = smallest_basis(model)
-    balanced = model.transformed(basis)
-    sizes = AffineSizes.of(balanced)
-    structure = StateSpaceStructure(sizes.order, sample_time=model.sample_time)
-    affine = ProductBasis((Polynomial(1),) * sizes.n_scheduling, total_degree=1)
-    dependence = ParameterDependence(
-        model.variables, (affine,) * 4, tuple(len(one.entries) for one in structure.groups)
-    )
-    theta = sizes.join((balanced.a, balanced.b, balanced.c, balanced.d))[sizes.in_products]
-    turning = _turning(sizes, basis)[sizes.in_products]
-    known = np.zeros((sizes.size,) * 2) if estimate.covariance is None else estimate.covariance
-    free = perpendicular(gauge_tangent(structure, dependence, theta))
-    found = Model(structure, dependence, theta, turning @ known @ turning.T, 1.0, effects, chart=free)
+    turning = _turning(AffineSizes.of(model), basis)
+    known = None if estimate.covariance is None else turning @ estimate.covariance @ turning.T
+    found = affine_model(AffineEstimate(model.transformed(basis), estimate.outcome, (), known))
+    assert found.chart is not None, "state spaces have a chart"
     if effects:
-        both = None if joint is None else _on_both_sides(free.T @ turning, joint)
+        inner = found.chart.T @ turning[AffineSizes.of(model).in_products]
+        both = None if joint is None else _on_both_sides(inner, joint)
     else:
         both = None if estimate.covariance is None else found.plant_covariance
-    return replace(found, joint_covariance=both)
+    return replace(found, effects=effects, joint_covariance=both)
+
+
+def affine_model(estimate: AffineEstimate) -> Model:
+    """The model of an estimate with declared scheduling variables, its matrices over 1 and each variable.
+
+    A covariance that is not known is zero there.
+    """
+    affine, places = estimate.model, AffineSizes.of(estimate.model).in_products
+    functions = [0, *range(affine.n_scheduling, 0, -1)]
+    a, b, c, d = (part[functions] for part in (affine.a, affine.b, affine.c, affine.d))
+    basis = ProductBasis((Polynomial(1),) * affine.n_scheduling, total_degree=1)
+    known = None if estimate.covariance is None else estimate.covariance[np.ix_(places, places)]
+    return state_space_model(affine.variables, (basis,) * 4, (a, b, c, d), affine.sample_time, known)
 
 
 def affine_estimate(model: Model) -> tuple[AffineEstimate, FloatArray | None]:

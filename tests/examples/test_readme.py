@@ -28,7 +28,11 @@ def shown(command: list[str], folder: Path, repository: Path) -> str:
 
 
 def test_the_library(repository: Path, tmp_path: Path) -> None:
-    (code,) = blocks(repository, "python")
+    first, code = blocks(repository, "python")
+    found = dict(line.split(" = ") for line in shown([sys.executable, "-c", first], tmp_path, repository).splitlines())
+    for name, true in (("a1[0]", -0.8), ("a1[1]", -5e-5), ("b0[0]", 0.5), ("b0[1]", 0.0)):
+        value, half_width = map(float, found[name].split(" ± "))
+        assert abs(value - true) < 2 * half_width
     lines = shown([sys.executable, "-c", code], tmp_path, repository).splitlines()
     assert lines[0] == "energy 3510.4, no design needs less than 3510.3"
     assert [line.partition(":")[0] for line in lines[1:]] == ["p = 0.0", "p = 1.5", "p = 8.0"]

@@ -1,8 +1,6 @@
 """Identifies a parameter-varying model from experiments."""
 
-import dataclasses
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from typing import Any
 
 from app import __version__
@@ -23,10 +21,9 @@ from app.jobs.task import TaskContext, TaskResult
 from app.schemas.experiments import Experiment
 from app.schemas.models import Model, ModelRequest
 from app.schemas.plants import Plant
-from identification.errors import MisuseError
-from identification.estimates import LocalEstimate, LpvEstimate
-from identification.models.rational import RationalStructure
-from identification.signals import FrequencyResponse, Measurement, TimeRecord
+from identification.estimates import Estimate
+from identification.methods.method import Task
+from identification.methods.two_step import TwoStep
 
 KIND = "identification"
 FIELDS = {"operating_points": "/experimentIds", "experiments": "/experimentIds", "prior": "/priorModelId"}
@@ -44,86 +41,28 @@ def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
         kept_measurement(experiment, context.arrays.get(given["arrays"]))
         for experiment, given in zip(experiments, payload["experiments"], strict=True)
     ]
-    data = [_fitted_data(request, structure, i, record, context) for i, record in enumerate(measured)]
-    with field_named(FIELDS, "/experimentIds"), within_doubles():
-        local = _local_estimates(request, structure, data, context)
-        context.progress(0.8, "the parameter-varying model")
-        estimate: LpvEstimate = request.lpv_estimator.build().estimate(
-            structure, dependence, data, local, prior=prior and kept_model(prior, plant)
-        )
+    spectral = None if request.spectral_estimator is None else request.spectral_estimator.build()
+    way = TwoStep(spectral, request.local_estimator.build(), request.lpv_estimator.build())
+    places = {f"data[{i}]": f"/experimentIds/{i}" for i in range(len(measured))}
+    with field_named({**FIELDS, **places}, "/experimentIds"), within_doubles():
+        known = kept_model(prior, plant) if prior else None
+        estimate = way.estimate(Task(tuple(measured), structure, dependence, prior=known), context.progress)
         require_finite(estimate.model)
-    estimate = _with_output_noise(estimate, experiments, measured, data)
-    return TaskResult(_document(plant, request, estimate, experiments, data, local))
-
-
-def _fitted_data(
-    request: ModelRequest, structure: RationalStructure, index: int, record: Measurement, context: TaskContext
-) -> Measurement:
-    """The record itself, or its frequency response when the local estimator takes those."""
-    if not isinstance(record, TimeRecord) or request.local_estimator.build().data is TimeRecord:
-        return record
-    context.progress(0.05, f"the frequency response of experiment {index + 1}")
-    assert request.spectral_estimator is not None, "checked when the job was submitted"
-    with within_doubles(), _place_named(index, record):
-        response: FrequencyResponse = request.spectral_estimator.build().estimate(record)
-    return response if structure.is_discrete else dataclasses.replace(response, sample_time=None)
-
-
-def _with_output_noise(
-    estimate: LpvEstimate,
-    experiments: Sequence[Experiment],
-    measured: Sequence[Measurement],
-    data: Sequence[Measurement],
-) -> LpvEstimate:
-    """The noise variance of the output in its unit, as designs need it, where responses of records were fitted.
-
-    Fits of responses give it as a factor on the variances of the responses only.
-    """
-    levels = [experiment.understood.noise_level for experiment in experiments]
-    known = [level for level in levels if level is not None and level > 0]
-    records = all(isinstance(one, TimeRecord) for one in measured)
-    if not records or len(known) < len(levels) or any(isinstance(one, TimeRecord) for one in data):
-        return estimate
-    variance = sum(level**2 for level in known) / len(known)
-    return dataclasses.replace(estimate, model=dataclasses.replace(estimate.model, noise_variance=variance))
-
-
-def _local_estimates(
-    request: ModelRequest, structure: RationalStructure, data: Sequence[Measurement], context: TaskContext
-) -> tuple[LocalEstimate, ...]:
-    estimator = request.local_estimator.build()
-    estimates = []
-    for i, measurement in enumerate(data):
-        context.progress(0.1 + 0.7 * i / len(data), f"local model {i + 1} of {len(data)}")
-        with _place_named(i, measurement):
-            estimates.append(estimator.estimate(structure, measurement))
-    return tuple(estimates)
-
-
-@contextmanager
-def _place_named(index: int, measurement: Measurement) -> Iterator[None]:
-    """Misuse of one experiment is named by its place in the request and its operating point."""
-    try:
-        yield
-    except MisuseError as error:
-        where = ", ".join(f"{value:g}" for value in measurement.operating_point)
-        raise MisuseError(f"the experiment at {where}: {error}", f"/experimentIds/{index}") from error
+    return TaskResult(_document(plant, request, estimate, experiments))
 
 
 def _document(
     plant: Plant,
     request: ModelRequest,
-    estimate: LpvEstimate,
+    estimate: Estimate,
     experiments: Sequence[Experiment],
-    data: Sequence[Measurement],
-    local: Sequence[LocalEstimate],
 ) -> dict[str, Any]:
     model = estimate.model
     designs = {experiment.design_id for experiment in experiments}
     asked = request.as_json()
     structure, basis, own_bases = chosen(plant, request)
     over_range = range_documents(model)
-    locals_ = zip(local, data, experiments, strict=True)
+    locals_ = zip(estimate.local, estimate.fitted, experiments, strict=True)
     return {
         **{
             name: asked[name] for name in ("name", "description", "localEstimator", "lpvEstimator", "spectralEstimator")
