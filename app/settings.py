@@ -2,6 +2,7 @@
 
 import ipaddress
 import re
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Self
 
@@ -23,7 +24,10 @@ class Settings(BaseSettings):
     host: str = Field(default="127.0.0.1", description="address to listen on; beyond loopback a token is required")
     port: int = Field(default=8000, ge=0, le=65535, description="port to listen on")
     token: SecretStr | None = Field(default=None, description="bearer token that every request must carry")
-    database_url: str | None = Field(default=None, description="SQLAlchemy URL; default: SQLite in the data directory")
+    database_url: str | None = Field(
+        default=None,
+        description="postgresql://… for several servers that share the data directory; default: SQLite in it",
+    )
     workers: int = Field(default=2, ge=1, le=256, description="jobs that run at the same time")
     job_time_limit_seconds: float = Field(default=3600.0, gt=0, description="a job that runs longer is ended")
     job_memory_limit_bytes: int = Field(
@@ -41,6 +45,9 @@ class Settings(BaseSettings):
         description="room on the disk of the data directory below which nothing is taken in",
     )
     max_body_bytes: int = Field(default=64 * MEBIBYTE, ge=1024, description="largest request body")
+    lease_seconds: float = Field(
+        default=20.0, gt=0, description="of several servers, one that is silent for so long is dead, and its jobs go on"
+    )
     unused_days: float = Field(
         default=7.0,
         ge=0.01,
@@ -64,6 +71,15 @@ class Settings(BaseSettings):
                 f"refusing to listen on {self.host} without authentication; "
                 "set LPV_OED_TOKEN, or LPV_OED_HOST=127.0.0.1"
             )
+        return self
+
+    @model_validator(mode="after")
+    def _database_is_known(self) -> Self:
+        kind = (self.database_url or "sqlite").partition(":")[0].partition("+")[0]
+        if kind not in ("sqlite", "postgresql", "postgres"):
+            raise ValueError(f"LPV_OED_DATABASE_URL begins with {kind!r}; it must be postgresql://… or sqlite:///…")
+        if kind != "sqlite" and find_spec("psycopg") is None:
+            raise ValueError("LPV_OED_DATABASE_URL needs a driver: pip install 'lpv-oed[postgresql]'")
         return self
 
     @property

@@ -46,6 +46,11 @@ class LocalExecutor:
         for slot in self._slots:
             slot.wake()
 
+    def end_lost(self, job_id: str | None = None) -> None:
+        """End child processes whose run is no longer the present one of its job: of this job, or of any."""
+        for slot in self._slots:
+            slot.end_if_lost(job_id)
+
     def cancel(self, job_id: str) -> None:
         """End the child process that runs this job, if there is one."""
         for slot in self._slots:

@@ -6,7 +6,7 @@ from threading import Event, Thread
 
 from app.jobs import problems
 from app.jobs.child import Child
-from app.jobs.journal import Journal
+from app.jobs.journal import Journal, Run
 from app.jobs.outcomes import Crashed, Ended, Faulted, NoRoom, Outcome, OutOfMemory, Refused, Succeeded, TimedOut
 from app.jobs.records import ClaimedJob
 from app.settings import Settings
@@ -27,6 +27,7 @@ class Slot:
         self._kinds = kinds
         self._settings = settings
         self.child = Child(settings)
+        self._present: Run | None = None
         self._awake = Event()
         self._stopping = Event()
         self._thread = Thread(target=self._loop, name="lpv-oed-job-slot", daemon=True)
@@ -48,6 +49,12 @@ class Slot:
         """Wait until the child process has ended."""
         self._thread.join()
 
+    def end_if_lost(self, job_id: str | None) -> None:
+        """End the child process if its run, of this job or of any, was cancelled or taken over elsewhere."""
+        run = self._present
+        if run is not None and job_id in (None, run[0]) and not self._journal.is_running(run):
+            self.child.end(run[0])
+
     def _loop(self) -> None:
         while not self._stopping.is_set():
             self._awake.clear()
@@ -65,7 +72,11 @@ class Slot:
         job = self._journal.claim() if self._room.is_enough() else None
         if job is None:
             return False
-        self._record(job, self._run(job))
+        self._present = (job.id, job.attempt)
+        try:
+            self._record(job, self._run(job))
+        finally:
+            self._present = None
         return True
 
     def _run(self, job: ClaimedJob) -> Outcome:

@@ -6,6 +6,7 @@ from typing import Any, cast
 from sqlalchemy.orm import Session
 
 from app.jobs.records import FINAL_STATES, EventName, JobEventRecord, JobRecord, JobState
+from app.store.postgres import announce
 from app.store.resources import href
 from app.store.rows import JobEventRow, JobRow
 
@@ -57,6 +58,7 @@ def tell(session: Session, row: JobRow, event: EventName, at: datetime | None = 
     session.flush()
     session.add(JobEventRow(job_id=row.id, at=at or datetime.now(UTC), name=event, data=_snapshot(row)))
     session.flush()
+    announce(session, row.id, event)
 
 
 def _snapshot(row: JobRow) -> dict[str, Any]:

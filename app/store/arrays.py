@@ -4,9 +4,10 @@ import fcntl
 import hashlib
 import io
 import os
+import time
 import zipfile
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 from uuid import uuid4
@@ -18,6 +19,7 @@ from app.store.faults import StorageFullError
 from app.store.room import free_bytes
 
 Array = NDArray[Any]
+SECONDS_OF_A_DAY = 86_400.0
 _EPOCH = (1980, 1, 1, 0, 0, 0)
 
 
@@ -42,11 +44,14 @@ class ArrayStore:
         self._temporary = root / "tmp"
         self._max_bytes = max_bytes
 
-    def prepare(self) -> None:
-        """Make the directories and remove what a crash left behind. Only while nobody else writes."""
+    def prepare(self, shared: bool = False) -> None:
+        """Make the directories and remove what a crash left behind; if they are `shared`, only what is a day old."""
         self._temporary.mkdir(parents=True, exist_ok=True)
+        end = time.time() - SECONDS_OF_A_DAY if shared else float("inf")
         for leftover in self._temporary.iterdir():
-            leftover.unlink(missing_ok=True)
+            with suppress(FileNotFoundError):
+                if leftover.stat().st_mtime < end:
+                    leftover.unlink()
         _sync_directory(self._root)
 
     def put(self, arrays: Mapping[str, Array]) -> str:

@@ -7,10 +7,10 @@ from functools import partial
 from threading import Lock
 from typing import Any
 
-from sqlalchemy import Engine, create_engine, func, make_url, select, text
+from sqlalchemy import Engine, create_engine, func, select, text
 from sqlalchemy.orm import Session
 
-from app.store import sqlite
+from app.store import postgres, sqlite
 from app.store.migrate import upgrade
 from app.store.rows import JobRow, ResourceRow
 
@@ -19,6 +19,7 @@ class Database:
     """Where the rows are. Thread-safe; call `migrate` once before use and `close` at the end."""
 
     def __init__(self, url: str) -> None:
+        self.url = url
         self._engine = _create_engine(url)
         self._writing = self._engine.execution_options(**{sqlite.WRITE_OPTION: True})
         self._turn: AbstractContextManager[Any] = Lock() if self._engine.dialect.name == "sqlite" else nullcontext()
@@ -26,7 +27,13 @@ class Database:
     def migrate(self) -> None:
         """Bring the tables to the newest version; does nothing when they are."""
         with self._turn, self._writing.begin() as connection:
+            postgres.lock_for_migration(connection)
             upgrade(connection)
+
+    @property
+    def is_shared(self) -> bool:
+        """Whether several servers may use it at the same time."""
+        return self._engine.dialect.name == "postgresql"
 
     @contextmanager
     def read(self) -> Iterator[Session]:
@@ -67,7 +74,10 @@ class Database:
 
 def _create_engine(url: str) -> Engine:
     dumps = partial(json.dumps, allow_nan=False, separators=(",", ":"))
-    engine = create_engine(make_url(url), json_serializer=dumps, pool_pre_ping=not url.startswith("sqlite"))
+    made = postgres.driver_url(url)
+    if made.get_backend_name() == "postgresql":
+        return create_engine(made, json_serializer=dumps, connect_args=postgres.CONNECTION, **postgres.POOL)
+    engine = create_engine(made, json_serializer=dumps)
     if engine.dialect.name == "sqlite":
         sqlite.prepare(engine)
     return engine

@@ -37,7 +37,20 @@ def test_settings_come_from_the_environment(monkeypatch: pytest.MonkeyPatch, tmp
     assert TOKEN not in repr(settings)
 
 
+@pytest.mark.parametrize("url", ["mysql://h/d", "h"])
+def test_a_database_of_another_kind_is_refused(url: str) -> None:
+    with pytest.raises(ValidationError, match="postgresql://"):
+        Settings(database_url=url)
+
+
+def test_a_database_without_its_driver_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("app.settings.find_spec", lambda name: None)
+    with pytest.raises(ValidationError, match=r"lpv-oed\[postgresql\]"):
+        Settings(database_url="postgresql://h/d")
+
+
 def test_another_database_is_a_setting() -> None:
+    pytest.importorskip("psycopg")
     assert Settings(database_url="postgresql://h/d").resolved_database_url == "postgresql://h/d"
 
 
