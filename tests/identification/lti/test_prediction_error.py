@@ -208,7 +208,7 @@ def test_pure_noise_model_and_pure_gain():
     ],
 )
 def test_records_without_information(u, y, named):
-    with pytest.raises(NotIdentifiableError, match=named):
+    with pytest.raises(MisuseError, match=named):
         PredictionError().estimate(SECOND, TimeRecord(u, y, 1.0, (0.0,)))
 
 
