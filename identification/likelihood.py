@@ -5,6 +5,7 @@ import numpy as np
 from identification.arrays import FloatArray
 from identification.errors import MisuseError
 from identification.filtering import lfilter
+from identification.models.physical import RationalForm
 from identification.models.rational import RationalStructure
 from identification.signals import FrequencyResponse, Measurement, TimeRecord, require_one_channel
 
@@ -63,7 +64,7 @@ def prediction_errors(
 
 
 def response_errors(
-    structure: RationalStructure, zeta: FloatArray, data: FrequencyResponse, weights: FloatArray | None = None
+    structure: RationalForm, zeta: FloatArray, data: FrequencyResponse, weights: FloatArray | None = None
 ) -> tuple[FloatArray, FloatArray]:
     """r (2F,) and ∂r/∂ζ (2F, n); see `residual_and_jacobian`. `weights` (F,) replace 1/σ_k."""
     require_same_sampling(structure, data)
@@ -76,7 +77,7 @@ def response_errors(
     return np.concatenate([error.real, error.imag]), jacobian
 
 
-def require_same_sampling(structure: RationalStructure, data: Measurement) -> None:
+def require_same_sampling(structure: RationalForm, data: Measurement) -> None:
     """Raises MisuseError when a measurement cannot be held against a model of this structure."""
     require_one_channel(data)
     if isinstance(data, TimeRecord) and (not structure.is_discrete or structure.delay):

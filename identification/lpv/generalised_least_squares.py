@@ -19,7 +19,7 @@ from identification.lpv.stacking import (
     whitener,
 )
 from identification.models.model import Model
-from identification.models.rational import RationalStructure
+from identification.models.physical import RationalForm
 from identification.outcome import Outcome, TestResult
 from identification.scheduling import ParameterDependence
 from identification.signals import FrequencyResponse, Measurement, require_one_channel
@@ -40,7 +40,7 @@ class GeneralisedLeastSquares:
 
     def estimate(
         self,
-        structure: RationalStructure,
+        structure: RationalForm,
         dependence: ParameterDependence,
         experiments: Sequence[Measurement],
         local: Sequence[LocalEstimate],
@@ -147,7 +147,7 @@ def _not_determined(estimate: LocalEstimate) -> NotIdentifiableError:
 
 
 def _require_usable(
-    structure: RationalStructure, experiments: Sequence[Measurement], local: Sequence[LocalEstimate]
+    structure: RationalForm, experiments: Sequence[Measurement], local: Sequence[LocalEstimate]
 ) -> None:
     if len(local) != len(experiments):
         raise ShapeError(
@@ -172,7 +172,7 @@ def _require_usable(
 
 
 def _by_coefficient(
-    structure: RationalStructure,
+    structure: RationalForm,
     dependence: ParameterDependence,
     points: FloatArray,
     local: Sequence[LocalEstimate],

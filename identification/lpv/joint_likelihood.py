@@ -19,7 +19,7 @@ from identification.lpv.pooled_start import pooled_starts, shrunk_zeros
 from identification.lpv.stacking import asymptotics_advice, stacked_points
 from identification.lti.multistart import lowest_minimum
 from identification.models.model import Model
-from identification.models.rational import RationalStructure
+from identification.models.physical import RationalForm
 from identification.outcome import Outcome
 from identification.scheduling import ParameterDependence
 from identification.signals import FrequencyResponse, Measurement, TimeRecord
@@ -63,7 +63,7 @@ class JointLikelihood:
 
     def estimate(
         self,
-        structure: RationalStructure,
+        structure: RationalForm,
         dependence: ParameterDependence,
         experiments: Sequence[Measurement],
         local: Sequence[LocalEstimate] = (),
@@ -99,8 +99,10 @@ class JointLikelihood:
         tests = joint_tests(residuals, solution) if determined else ()
         return Estimate(model, outcome, tests, tuple(local))
 
-    def _fitted(self, structure: RationalStructure, data: Measurement) -> Measurement:
-        return fitted_record(structure, data, self.initial_conditions)[1] if isinstance(data, TimeRecord) else data
+    def _fitted(self, structure: RationalForm, data: Measurement) -> Measurement:
+        return (
+            fitted_record(structure.plain, data, self.initial_conditions)[1] if isinstance(data, TimeRecord) else data
+        )
 
     @classmethod
     def example(cls) -> "JointLikelihood":
@@ -142,7 +144,7 @@ def _fit(
 
 
 def _starts(
-    structure: RationalStructure,
+    structure: RationalForm,
     dependence: ParameterDependence,
     experiments: Sequence[Measurement],
     local: Sequence[LocalEstimate],
@@ -162,14 +164,14 @@ def _starts(
     yield pooled_starts(structure, transfer, experiments)
 
 
-def _of_kind(structure: RationalStructure, experiment: Measurement) -> Measurement:
+def _of_kind(structure: RationalForm, experiment: Measurement) -> Measurement:
     if structure.n_noise and isinstance(experiment, FrequencyResponse):
         raise NotIdentifiableError("a frequency response says nothing about H")
     return experiment
 
 
 def _require_information(
-    structure: RationalStructure, transfer: FloatArray, experiments: Sequence[Measurement], prior: Model | None
+    structure: RationalForm, transfer: FloatArray, experiments: Sequence[Measurement], prior: Model | None
 ) -> None:
     for experiment in experiments:
         require_same_sampling(structure, experiment)
@@ -194,7 +196,7 @@ def _outcome(solution: LeastSquaresSolution, residuals: JointResiduals, variance
     """
     structure = residuals.structure
     if structure.is_discrete:
-        inside = shrunk_zeros(structure, residuals.transfer, solution.x, 0.3)
+        inside = shrunk_zeros(structure.plain, residuals.transfer, solution.x, 0.3)
         if is_singular(residuals.settled_jacobian(inside, variances)):
             advice = "the experiments do not determine all parameters; excite more frequencies or choose a lower order"
             return Outcome("not_identifiable", advice, solution.outcome.iterations)

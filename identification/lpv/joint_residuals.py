@@ -13,6 +13,7 @@ from identification.least_squares import LeastSquaresSolution
 from identification.likelihood import prediction_errors, response_errors
 from identification.lpv.stacking import prior_rows
 from identification.models.model import Model
+from identification.models.physical import RationalForm
 from identification.models.rational import RationalStructure
 from identification.response_tests import real_count, variance_inflation
 from identification.signals import FrequencyResponse, Measurement, TimeRecord
@@ -28,7 +29,7 @@ class JointResiduals:
     `identification.initial_conditions.fitted_record`, whose structure is `structure_of_records`.
     """
 
-    structure: RationalStructure
+    structure: RationalForm
     transfer: FloatArray
     experiments: tuple[Measurement, ...]
     prior: Model | None
@@ -39,7 +40,8 @@ class JointResiduals:
     @cached_property
     def structure_of_records(self) -> RationalStructure:
         """The structure without the delay that the records have been moved by."""
-        return replace(self.structure, n_k=0) if self.initial == "estimate" else self.structure
+        plain = self.structure.plain
+        return replace(plain, n_k=0) if self.initial == "estimate" else plain
 
     @cached_property
     def group_of(self) -> tuple[str | None, ...]:

@@ -10,6 +10,7 @@ from identification.filtering import lfilter
 from identification.likelihood import delayed
 from identification.lti.box_jenkins_start import autoregression, disturbance, high_order_model, reflected
 from identification.models.hold import without_hold
+from identification.models.physical import RationalForm
 from identification.models.rational import RationalStructure
 from identification.signals import FrequencyResponse, Measurement, TimeRecord
 
@@ -18,7 +19,7 @@ DELAYS_TRIED = 8
 
 
 def pooled_starts(
-    structure: RationalStructure, transfer: FloatArray, experiments: Sequence[Measurement], rounds: int = 6
+    structure: RationalForm, transfer: FloatArray, experiments: Sequence[Measurement], rounds: int = 6
 ) -> list[FloatArray]:
     """Stable first estimates θ (k,) for T(p_m) (M, n, k): a Steiglitz–McBride iteration that is linear in θ.
 
@@ -33,13 +34,13 @@ def pooled_starts(
         for whitened in (True, False):
             parts = [_Rows(structure, T, e, tau, whitened) for T, e in zip(transfer, experiments, strict=True)]
             for plant in _iterate(structure, transfer, parts, tau, rounds):
-                noisy = _with_noise(structure, transfer, experiments, plant)
+                noisy = _with_noise(structure.plain, transfer, experiments, plant)
                 stable = _drawn_in(structure, transfer, noisy)
                 found.extend([stable] if stable is not None and np.all(np.isfinite(stable)) else [])
     return found
 
 
-def _delays(structure: RationalStructure, experiments: Sequence[Measurement]) -> list[float]:
+def _delays(structure: RationalForm, experiments: Sequence[Measurement]) -> list[float]:
     if not structure.delay:
         return [0.0]
     lines = [np.sort(e.frequencies) for e in experiments if isinstance(e, FrequencyResponse)]
@@ -53,13 +54,13 @@ class _Rows:
     """The linear equations in θ that one experiment contributes, weighted with the denominator of the round before."""
 
     def __init__(
-        self, structure: RationalStructure, transfer: FloatArray, data: Measurement, tau: float, whitened: bool
+        self, structure: RationalForm, transfer: FloatArray, data: Measurement, tau: float, whitened: bool
     ) -> None:
         self.structure, self.transfer, self.data, self.tau = structure, transfer, data, tau
         self.whitener = ONE
         if isinstance(data, TimeRecord) and whitened and structure.n_noise:
             order = min(25, max(len(data) // 6, 1))
-            self.whitener = high_order_model(structure, data, order).denominator
+            self.whitener = high_order_model(structure.plain, data, order).denominator
 
     def equations(self, theta: FloatArray | None) -> tuple[FloatArray, FloatArray]:
         """Columns (R, k) and target (R,)."""
@@ -67,10 +68,10 @@ class _Rows:
             columns, target = self._of_record(self.data, theta)
         else:
             columns, target = self._of_response(self.data, theta)
-        return columns @ self.transfer[: self.structure.n_a + self.structure.n_b + 1], target
+        return columns @ self.transfer[: columns.shape[1]], target
 
     def _of_record(self, record: TimeRecord, theta: FloatArray | None) -> tuple[FloatArray, FloatArray]:
-        s = self.structure
+        s = self.structure.plain
         denominator = ONE
         if theta is not None:
             denominator = reflected(np.concatenate([ONE, (self.transfer @ theta)[: s.n_a]]))
@@ -82,17 +83,13 @@ class _Rows:
         return columns - start @ (start.T @ columns), y - start @ (start.T @ y)
 
     def _of_response(self, data: FrequencyResponse, theta: FloatArray | None) -> tuple[FloatArray, FloatArray]:
-        s = self.structure
-        numerator, denominator = s.powers(data.frequencies)
+        a_0, a, b_0, b = self.structure.affine(data.frequencies)
         weights = 1 / np.sqrt(data.variance) if data.variance is not None else np.ones(len(data))
         weights = weights.astype(np.complex128)
         if theta is not None:
-            local = self.transfer @ theta
-            weights = weights / abs(denominator[0] + local[: s.n_a] @ denominator[1:])
+            weights = weights / abs(a_0 + (self.transfer @ theta)[: len(a)] @ a)
         response = without_hold(data) * np.exp(1j * data.frequencies * self.tau)
-        columns = weights * np.concatenate([-response * denominator[1:], numerator])
-        target = weights * response * denominator[0]
-        return _real(columns).T, _real(target)
+        return _real(weights * (b - response * a)).T, _real(weights * (response * a_0 - b_0))
 
 
 def _real(values: ComplexArray) -> FloatArray:
@@ -100,7 +97,7 @@ def _real(values: ComplexArray) -> FloatArray:
 
 
 def _iterate(
-    structure: RationalStructure, transfer: FloatArray, parts: Sequence[_Rows], tau: float, rounds: int
+    structure: RationalForm, transfer: FloatArray, parts: Sequence[_Rows], tau: float, rounds: int
 ) -> Iterator[FloatArray]:
     """θ (k,) after each of the last rounds, with zeros for H and, where there is a delay, τ the same everywhere."""
     theta: FloatArray | None = None
@@ -141,7 +138,7 @@ def _solve(columns: FloatArray, target: FloatArray) -> FloatArray:
     return np.asarray(np.linalg.lstsq(columns / scale, target, rcond=1e-11)[0] / scale)
 
 
-def _drawn_in(structure: RationalStructure, transfer: FloatArray, theta: FloatArray) -> FloatArray | None:
+def _drawn_in(structure: RationalForm, transfer: FloatArray, theta: FloatArray) -> FloatArray | None:
     """θ with all zeros of A, C, D drawn towards the origin until every operating point is stable.
 
     In discrete time i-th coefficients are multiplied by λ^i, which multiplies every zero by λ; in continuous time the
@@ -152,7 +149,7 @@ def _drawn_in(structure: RationalStructure, transfer: FloatArray, theta: FloatAr
     if not structure.is_discrete:
         return _mirrored(structure, transfer, theta)
     for factor in (0.999, 0.99, 0.97, 0.95, 0.9, 0.8, 0.6, 0.4, 0.2, 0.0):
-        shrunk = shrunk_zeros(structure, transfer, theta, factor)
+        shrunk = shrunk_zeros(structure.plain, transfer, theta, factor)
         if np.all(structure.stable(transfer @ shrunk)):
             return shrunk
     return None
@@ -169,12 +166,12 @@ def shrunk_zeros(structure: RationalStructure, transfer: FloatArray, theta: Floa
     return np.asarray(theta * factor**exponents)
 
 
-def _mirrored(structure: RationalStructure, transfer: FloatArray, theta: FloatArray) -> FloatArray | None:
-    zeta = transfer @ theta
-    for row in zeta:
-        poles = structure.poles(row) / structure.frequency_scale
+def _mirrored(structure: RationalForm, transfer: FloatArray, theta: FloatArray) -> FloatArray | None:
+    plain = structure.to_plain(transfer @ theta)
+    for row in plain:
+        poles = structure.plain.poles(row) / structure.frequency_scale
         mirrored = -np.maximum(abs(poles.real), 1e-3 * abs(poles)) + 1j * poles.imag
         row[: structure.n_a] = np.poly(mirrored).real[1:]
     matrix = transfer.reshape(-1, transfer.shape[-1])
-    fitted = _solve(matrix, zeta.ravel())
+    fitted = _solve(matrix, structure.of_plain(plain).ravel())
     return fitted if np.all(structure.stable(transfer @ fitted)) else None

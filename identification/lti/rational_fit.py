@@ -11,6 +11,7 @@ from identification.estimates import LocalEstimate
 from identification.least_squares import LeastSquaresSolution, levenberg_marquardt
 from identification.likelihood import require_same_sampling, response_errors
 from identification.models.model import LocalModel
+from identification.models.physical import RationalForm
 from identification.models.rational import RationalStructure
 from identification.outcome import Outcome
 from identification.rational_basis import LinearProblem, frequency_scale, rescale
@@ -54,7 +55,7 @@ class RationalFit:
         """An instance for tests and catalogues."""
         return cls(weighting="relative")
 
-    def estimate(self, structure: RationalStructure, data: FrequencyResponse) -> LocalEstimate:
+    def estimate(self, structure: RationalForm, data: FrequencyResponse) -> LocalEstimate:
         """The fit of `structure`, with tests of its residual.
 
         `fit_percent` is 100 (1 − ‖Ĝ − G‖/‖Ĝ − mean Ĝ‖) (‖Ĝ‖ for a constant Ĝ). Raises MisuseError for a structure with
@@ -63,14 +64,16 @@ class RationalFit:
         """
         self._check(structure, data)
         inflation = variance_inflation(data.variance_degrees_of_freedom) if self.weighting == "variance" else 1.0
-        scaled = replace(structure, frequency_scale=frequency_scale(structure, data))
+        plain = structure.plain
+        scaled = replace(plain, frequency_scale=frequency_scale(plain, data))
         weights = self._weights(data)
         solution = self._search(scaled, data, weights)
         factors = rescale(scaled, structure.frequency_scale)
         free = real_count(data) - structure.size
         scale = 1.0 if self.weighting == "variance" else solution.cost / free
         covariance = inflation * self._covariance(solution, data, weights, scale) * np.outer(factors, factors)
-        zeta = factors * solution.x
+        zeta = structure.of_plain(factors * solution.x)
+        covariance = structure.covariance_of_plain(zeta, covariance)
         model = LocalModel(structure, data.operating_point, zeta, covariance, scale)
         errors = (solution.residual[: len(data)] + 1j * solution.residual[len(data) :]) / np.sqrt(2)
         whitened = np.ones(len(data)) if data.variance is None else 1 / (weights * np.sqrt(data.variance))
@@ -80,10 +83,10 @@ class RationalFit:
         outcome = _with_advice(solution.outcome, scaled, solution.x, self.stable, free)
         return LocalEstimate(model, outcome, tuple(tests), _fit_percent(data, errors / weights))
 
-    def _check(self, structure: RationalStructure, data: FrequencyResponse) -> None:
+    def _check(self, structure: RationalForm, data: FrequencyResponse) -> None:
         require_same_sampling(structure, data)
         if self.relaxation:
-            require_relaxation(structure)
+            require_relaxation(structure.plain)
             if data.held is not None:
                 raise MisuseError(
                     "positive residues are fitted to responses of continuous inputs, not of held ones; leave the"

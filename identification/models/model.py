@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from identification.arrays import ComplexArray, FloatArray
 from identification.comparison.batch import Batch
 from identification.errors import MisuseError, ShapeError
-from identification.models.rational import RationalStructure
+from identification.models.physical import RationalForm
 from identification.models.structure import Structure
 from identification.places.place import Flow, Setting
 from identification.places.placed import PlacedEffect
@@ -25,7 +25,7 @@ SLOPE_STEP = 1e-4
 class LocalModel:
     """A model at one operating point: ζ (n,), its covariance P_ζ (n, n) and the variance σ_e² of e."""
 
-    structure: RationalStructure
+    structure: RationalForm
     operating_point: OperatingPoint
     zeta: FloatArray
     covariance: FloatArray

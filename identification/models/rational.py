@@ -70,6 +70,30 @@ class RationalStructure(Structure):
         a, b, tau, c, d = np.split(zeta, ends, axis=-1)
         return a, b, tau, c, d
 
+    @property
+    def plain(self) -> "RationalStructure":
+        """Itself: the leading coefficient of A is one."""
+        return self
+
+    def to_plain(self, zeta: FloatArray) -> FloatArray:
+        """ζ as it is."""
+        return zeta
+
+    def of_plain(self, plain: FloatArray) -> FloatArray:
+        """ζ as it is."""
+        return plain
+
+    def covariance_of_plain(self, zeta: FloatArray, covariance: FloatArray) -> FloatArray:
+        """The covariance as it is."""
+        return covariance
+
+    def affine(self, omega: FloatArray) -> tuple[ComplexArray, ComplexArray, ComplexArray, ComplexArray]:
+        """A_0 (F,), ∂A (n, F), B_0 (F,), ∂B (n, F) of A = A_0 + ζᵀ∂A, B = B_0 + ζᵀ∂B in (a_1 …, b_0 …)."""
+        numerator, denominator = self.powers(omega)
+        a = np.concatenate([denominator[1:], np.zeros_like(numerator)])
+        b = np.concatenate([np.zeros_like(denominator[1:]), numerator])
+        return denominator[0], a, np.zeros_like(denominator[0]), b
+
     def response(self, zeta: FloatArray, omega: FloatArray) -> ComplexArray:
         """That of one input and output, as (…, F, 1, 1)."""
         return self.plant_response(zeta, omega)[..., None, None]

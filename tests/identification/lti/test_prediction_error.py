@@ -5,7 +5,7 @@ import pytest
 from scipy import stats
 from scipy.signal import lfilter
 
-from identification.errors import MisuseError, NotIdentifiableError, RangeError
+from identification.errors import MisuseError, RangeError
 from identification.initial_conditions import errors_from
 from identification.least_squares import levenberg_marquardt
 from identification.lti.prediction_error import PredictionError
