@@ -18,7 +18,7 @@ from identification.arrays import FloatArray
 from identification.errors import RangeError
 from identification.estimates import LocalEstimate
 from identification.models.model import Model
-from identification.models.rational import RationalStructure
+from identification.models.physical import RationalForm
 from identification.outcome import Outcome, TestResult
 from identification.scheduling import ParameterDependence
 from identification.signals import FrequencyResponse, Measurement
@@ -37,7 +37,7 @@ def chosen(
     return request.structure or plant.structure, request.basis or plant.basis, own
 
 
-def requested_structure(plant: Plant, request: ModelRequest) -> tuple[RationalStructure, ParameterDependence]:
+def requested_structure(plant: Plant, request: ModelRequest) -> tuple[RationalForm, ParameterDependence]:
     """Structure and dependence of the model asked for."""
     document, basis, own = chosen(plant, request)
     structure = rational_of(document)

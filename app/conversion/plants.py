@@ -7,8 +7,10 @@ from typing_extensions import TypeIs
 
 from app.schemas.plants import (
     CoefficientBasis,
+    ContinuousTimeStructure,
     DiscreteStateSpaceStructure,
     DiscreteTimeStructure,
+    PhysicalCoefficient,
     PlantRequest,
     ProductBasisDocument,
     RationalStructureDocument,
@@ -19,6 +21,7 @@ from app.schemas.plants import (
 )
 from identification.errors import MisuseError, RangeError, ShapeError
 from identification.models.model import Model
+from identification.models.physical import Coefficient, PhysicalForm, RationalForm
 from identification.models.rational import RationalStructure
 from identification.scheduling import ParameterDependence, ProductBasis, SchedulingVariable
 
@@ -33,14 +36,14 @@ def is_state_space(document: Structure) -> TypeIs[StateSpaceStructureDocument]:
     return isinstance(document, StateSpaceStructure)
 
 
-def rational_of(document: Structure) -> RationalStructure:
+def rational_of(document: Structure) -> RationalForm:
     """The rational structure of a document; raises MisuseError when it is of another kind."""
     if is_state_space(document):
         raise MisuseError("the structure is that of state-space models; this needs a rational one", "structure")
     return rational_structure(document)
 
 
-def rational_structure(document: RationalStructureDocument) -> RationalStructure:
+def rational_structure(document: RationalStructureDocument) -> RationalForm:
     """The structure of a document."""
     if isinstance(document, DiscreteTimeStructure):
         return RationalStructure(
@@ -52,12 +55,14 @@ def rational_structure(document: RationalStructureDocument) -> RationalStructure
             sample_time=document.sample_time_seconds,
             delay=document.delay,
         )
-    return RationalStructure(
-        n_a=document.na,
-        n_b=document.nb,
-        frequency_scale=document.frequency_scale_rad_per_second,
-        delay=document.delay,
-    )
+    scale, delay = document.frequency_scale_rad_per_second, document.delay
+    if isinstance(document, ContinuousTimeStructure):
+        return RationalStructure(document.na, document.nb, frequency_scale=scale, delay=delay)
+    return PhysicalForm(_coefficients(document.denominator), _coefficients(document.numerator), scale, delay)
+
+
+def _coefficients(documents: Sequence[PhysicalCoefficient]) -> tuple[Coefficient, ...]:
+    return tuple(Coefficient(one.name, one.unit, one.fixed_at) for one in documents)
 
 
 def product_basis(document: ProductBasisDocument) -> ProductBasis:
@@ -108,7 +113,7 @@ def _evaluate_at_both_ends(dependence: ParameterDependence) -> None:
         raise RangeError("a basis function overflows inside the range; choose a lower degree or another unit", "basis")
 
 
-def structure_and_dependence(plant: PlantRequest) -> tuple[RationalStructure, ParameterDependence]:
+def structure_and_dependence(plant: PlantRequest) -> tuple[RationalForm, ParameterDependence]:
     """The rational structure of a plant and how it depends on the scheduling variables; raises MisuseError."""
     structure = rational_of(plant.structure)
     return structure, plant_dependence(plant)
@@ -163,7 +168,7 @@ def sample_time(structure: StateSpaceStructureDocument) -> float | None:
 
 
 def lpv_model(
-    structure: RationalStructure,
+    structure: RationalForm,
     dependence: ParameterDependence,
     theta: Sequence[float],
     covariance: Sequence[Sequence[float]] | None,

@@ -59,6 +59,32 @@ class ContinuousTimeStructure(CamelModel):
     )
 
 
+class PhysicalCoefficient(CamelModel):
+    """One coefficient of the differential equation."""
+
+    name: Name = Field(description="what it is called, e.g. J; the name of its parameters")
+    unit: Text = Field(default="", description="its unit, with time in seconds")
+    fixed_at: Double | None = Field(default=None, description="its known value; left out when it is to be estimated")
+
+
+PhysicalCoefficients = Annotated[list[PhysicalCoefficient], Field(min_length=1, max_length=31)]
+
+
+class PhysicalFormStructure(CamelModel):
+    """G = exp(−jωτ) B/A in continuous time with the coefficients of physics, exactly one of them known.
+
+    For J dω/dt + d ω = k u with known k: denominator J, d; numerator k fixed.
+    """
+
+    time_domain: Literal["continuousPhysical"]
+    denominator: PhysicalCoefficients = Field(description="of the output's derivatives, the highest first")
+    numerator: PhysicalCoefficients = Field(description="of the input's derivatives, the highest first")
+    delay: bool = Field(default=False, description="estimate a delay tau in seconds")
+    frequency_scale_rad_per_second: Annotated[Double, Field(ge=1e-15, le=1e15)] = Field(
+        default=1.0, description="a frequency in the middle of the data"
+    )
+
+
 class StateSpaceStructure(CamelModel):
     """What state-space structures of both time domains state."""
 
@@ -99,11 +125,11 @@ class CoefficientBasis(CamelModel):
     basis: ProductBasisDocument
 
 
-RATIONAL = (DiscreteTimeStructure, ContinuousTimeStructure)
+RATIONAL = (DiscreteTimeStructure, ContinuousTimeStructure, PhysicalFormStructure)
 STATE_SPACE = (DiscreteStateSpaceStructure, ContinuousStateSpaceStructure)
 
 if TYPE_CHECKING:
-    RationalStructureDocument = DiscreteTimeStructure | ContinuousTimeStructure
+    RationalStructureDocument = DiscreteTimeStructure | ContinuousTimeStructure | PhysicalFormStructure
     StateSpaceStructureDocument = DiscreteStateSpaceStructure | ContinuousStateSpaceStructure
     Structure = RationalStructureDocument | StateSpaceStructureDocument
 else:

@@ -8,14 +8,14 @@ from app.errors import UnprocessableError
 from app.schemas.experiments import Experiment
 from app.schemas.models import Model, ModelRequest
 from app.schemas.plants import Plant
-from identification.models.rational import RationalStructure
+from identification.models.physical import RationalForm
 from identification.scheduling import ParameterDependence
 from identification.signals import TimeRecord
 
 SAMPLE_TIME_TOLERANCE = 1e-6
 
 
-def check_fitting(request: ModelRequest, structure: RationalStructure, experiments: Sequence[Experiment]) -> None:
+def check_fitting(request: ModelRequest, structure: RationalForm, experiments: Sequence[Experiment]) -> None:
     """Raises UnprocessableError at the field that does not fit."""
     takes_records = request.local_estimator.build().data is TimeRecord
     kind = request.local_estimator.kind  # type: ignore[attr-defined]
@@ -39,7 +39,7 @@ def check_fitting(request: ModelRequest, structure: RationalStructure, experimen
 def check_prior(
     plant: Plant,
     prior: Model,
-    structure: RationalStructure,
+    structure: RationalForm,
     dependence: ParameterDependence,
     experiment_ids: Sequence[str],
 ) -> None:
@@ -58,7 +58,7 @@ def check_prior(
 
 
 def _check_response(
-    takes_records: bool, kind: str, structure: RationalStructure, experiment: Experiment, pointer: str
+    takes_records: bool, kind: str, structure: RationalForm, experiment: Experiment, pointer: str
 ) -> None:
     if takes_records:
         raise UnprocessableError.at(pointer, f"this is a frequency response; {kind} takes time records")
@@ -68,7 +68,7 @@ def _check_response(
 
 
 def _check_record(
-    takes_records: bool, request: ModelRequest, structure: RationalStructure, experiment: Experiment, pointer: str
+    takes_records: bool, request: ModelRequest, structure: RationalForm, experiment: Experiment, pointer: str
 ) -> None:
     if not takes_records and request.spectral_estimator is None:
         raise UnprocessableError.at(

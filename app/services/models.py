@@ -23,7 +23,7 @@ from app.services.jobs import fingerprint
 from app.services.plants import plant_of
 from app.store.resources import Resource, ResourceRepository
 from identification.models.model import Model
-from identification.models.rational import RationalStructure
+from identification.models.physical import RationalForm
 
 KIND = "models"
 STATE_SPACE = "the plant has a state-space structure; its models are identified with POST /v1/models/state-space"
@@ -108,7 +108,7 @@ def state(resources: ResourceRepository, request: StatedModelRequest) -> ModelDo
     return model_of(resources.add(KIND, stated(plant, request), plant.id))
 
 
-def unstable_advice(structure: RationalStructure, model: Model) -> str:
+def unstable_advice(structure: RationalForm, model: Model) -> str:
     """Why a model is refused."""
     what = "G is unstable" if structure.n_noise == 0 else "G, H or the inverse of H is unstable"
     names = ", ".join(model.parameter_names)

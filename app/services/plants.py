@@ -14,6 +14,7 @@ KIND = "plants"
 POINTERS = {
     "n_k": "/structure",
     "sample_time": "/structure",
+    "structure": "/structure",
     "maximum": "/schedulingVariables",
     "scheduling_variables": "/schedulingVariables",
     "coefficient_bases": "/coefficientBases",

@@ -8,7 +8,7 @@ import { usualBand } from "./target_fields.js";
 
 // {element, value()}: these fields of a request.
 export function limits(catalogue, plant, experiments) {
-  const continuous = plant.structure.timeDomain === "continuous";
+  const continuous = plant.structure.timeDomain !== "discrete";
   const family = pluginField("kind of spectra", catalogue.spectrumFamilies, { pointer: "/spectrumFamily", kind: "lines", values: { fir: { degree: 10 }, lines: { samples: 500 } } });
   const name = textInput();
   const samples = integerInput(1000, { min: 1 });

@@ -6,7 +6,7 @@ import { pluginField } from "../plugin_field.js";
 // {element, value()}: the estimators of a request.
 export function estimators(catalogue, plant, experiments) {
   const responses = experiments.some((one) => one.kind === "frequencyResponse");
-  const continuous = plant.structure.timeDomain === "continuous";
+  const continuous = plant.structure.timeDomain !== "discrete";
   const fits = continuous || responses;
   const local = pluginField("model of one operating point", catalogue.localEstimators, { pointer: "/localEstimator", kind: fits ? "rational_fit" : "prediction_error" });
   const lpv = pluginField("model over the range", catalogue.lpvEstimators, { pointer: "/lpvEstimator", kind: "joint_likelihood" });
