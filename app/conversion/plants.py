@@ -7,13 +7,9 @@ from typing_extensions import TypeIs
 
 from app.schemas.plants import (
     CoefficientBasis,
-    ContinuousTimeStructure,
     DiscreteStateSpaceStructure,
-    DiscreteTimeStructure,
-    PhysicalCoefficient,
     PlantRequest,
     ProductBasisDocument,
-    RationalStructureDocument,
     SchedulingVariableDocument,
     StateSpaceStructure,
     StateSpaceStructureDocument,
@@ -21,8 +17,7 @@ from app.schemas.plants import (
 )
 from identification.errors import MisuseError, RangeError, ShapeError
 from identification.models.model import Model
-from identification.models.physical import Coefficient, PhysicalForm, RationalForm
-from identification.models.rational import RationalStructure
+from identification.models.physical import RationalForm
 from identification.scheduling import ParameterDependence, ProductBasis, SchedulingVariable
 
 MAX_PARAMETERS = 200
@@ -40,29 +35,7 @@ def rational_of(document: Structure) -> RationalForm:
     """The rational structure of a document; raises MisuseError when it is of another kind."""
     if is_state_space(document):
         raise MisuseError("the structure is that of state-space models; this needs a rational one", "structure")
-    return rational_structure(document)
-
-
-def rational_structure(document: RationalStructureDocument) -> RationalForm:
-    """The structure of a document."""
-    if isinstance(document, DiscreteTimeStructure):
-        return RationalStructure(
-            n_a=document.na,
-            n_b=document.nb,
-            n_k=document.nk,
-            n_c=document.nc,
-            n_d=document.nd,
-            sample_time=document.sample_time_seconds,
-            delay=document.delay,
-        )
-    scale, delay = document.frequency_scale_rad_per_second, document.delay
-    if isinstance(document, ContinuousTimeStructure):
-        return RationalStructure(document.na, document.nb, frequency_scale=scale, delay=delay)
-    return PhysicalForm(_coefficients(document.denominator), _coefficients(document.numerator), scale, delay)
-
-
-def _coefficients(documents: Sequence[PhysicalCoefficient]) -> tuple[Coefficient, ...]:
-    return tuple(Coefficient(one.name, one.unit, one.fixed_at) for one in documents)
+    return document.structure()
 
 
 def product_basis(document: ProductBasisDocument) -> ProductBasis:

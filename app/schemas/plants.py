@@ -7,6 +7,8 @@ from pydantic import Field
 from app.schemas.common import CamelModel, Double, Integer, Timestamp
 from app.schemas.families import Basis
 from app.schemas.plug_ins import named_union
+from identification.models.physical import Coefficient, PhysicalForm
+from identification.models.rational import RationalStructure
 
 Text = Annotated[str, Field(max_length=200)]
 Name = Annotated[str, Field(min_length=1, max_length=200)]
@@ -46,6 +48,17 @@ class DiscreteTimeStructure(CamelModel):
     nd: Order = Field(default=0, description="order of D = 1 + d1 q + …")
     delay: bool = Field(default=False, description="estimate a further delay tau in seconds")
 
+    def structure(self) -> RationalStructure:
+        """What it stands for."""
+        orders = (self.na, self.nb, self.nk, self.nc, self.nd)
+        return RationalStructure(*orders, sample_time=self.sample_time_seconds, delay=self.delay)
+
+    @property
+    def words(self) -> str:
+        """It in a few words."""
+        orders = f"na {self.na}, nb {self.nb}, nk {self.nk}, nc {self.nc}, nd {self.nd}"
+        return f"discrete time, {self.sample_time_seconds:g} s; {orders}"
+
 
 class ContinuousTimeStructure(CamelModel):
     """Orders of G = exp(−jωτ) B/A in continuous time, x = jω/frequencyScaleRadPerSecond."""
@@ -58,6 +71,16 @@ class ContinuousTimeStructure(CamelModel):
         default=1.0, description="frequency that coefficients are scaled by; choose one in the middle of the data"
     )
 
+    def structure(self) -> RationalStructure:
+        """What it stands for."""
+        scale = self.frequency_scale_rad_per_second
+        return RationalStructure(self.na, self.nb, frequency_scale=scale, delay=self.delay)
+
+    @property
+    def words(self) -> str:
+        """It in a few words."""
+        return f"continuous time; na {self.na}, nb {self.nb}"
+
 
 class PhysicalCoefficient(CamelModel):
     """One coefficient of the differential equation."""
@@ -65,6 +88,12 @@ class PhysicalCoefficient(CamelModel):
     name: Name = Field(description="what it is called, e.g. J; the name of its parameters")
     unit: Text = Field(default="", description="its unit, with time in seconds")
     fixed_at: Double | None = Field(default=None, description="its known value; left out when it is to be estimated")
+
+    @property
+    def words(self) -> str:
+        """It in a few words."""
+        known = "" if self.fixed_at is None else f" = {self.fixed_at:g}"
+        return (f"{self.name} ({self.unit})" if self.unit else self.name) + known
 
 
 PhysicalCoefficients = Annotated[list[PhysicalCoefficient], Field(min_length=1, max_length=31)]
@@ -84,6 +113,20 @@ class PhysicalFormStructure(CamelModel):
         default=1.0, description="a frequency in the middle of the data"
     )
 
+    def structure(self) -> PhysicalForm:
+        """What it stands for."""
+        output, input = (
+            tuple(Coefficient(one.name, one.unit, one.fixed_at) for one in side)
+            for side in (self.denominator, self.numerator)
+        )
+        return PhysicalForm(output, input, self.frequency_scale_rad_per_second, self.delay)
+
+    @property
+    def words(self) -> str:
+        """It in a few words."""
+        output, input = (", ".join(one.words for one in side) for side in (self.denominator, self.numerator))
+        return f"continuous time; output: {output}; input: {input}"
+
 
 class StateSpaceStructure(CamelModel):
     """What state-space structures of both time domains state."""
@@ -92,6 +135,11 @@ class StateSpaceStructure(CamelModel):
         default=None,
         description="number of states; null: chosen by the estimator, where it can",
     )
+
+    @property
+    def words(self) -> str:
+        """It in a few words."""
+        return "state space"
 
 
 class DiscreteStateSpaceStructure(StateSpaceStructure):

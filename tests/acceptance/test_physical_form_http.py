@@ -1,4 +1,4 @@
-"""A motor in the coefficients of physics walks the loop over HTTP: identify, design, play, compare, diagnose, simulate."""
+"""A motor in the coefficients of physics walks the loop over HTTP, from records to designs and simulations."""
 
 import numpy as np
 import pytest

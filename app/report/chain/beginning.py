@@ -12,39 +12,18 @@ from app.report.figures.signals import signal_table, signals
 from app.report.figures.spectra import spectra
 from app.report.numbers import percent, significant
 from app.schemas.designs import Design
-from app.schemas.plants import (
-    ContinuousTimeStructure,
-    DiscreteTimeStructure,
-    PhysicalCoefficient,
-    PhysicalFormStructure,
-)
 from oed.design import DesignedExperiment
 
 
 def plant_section(chain: Chain) -> Section:
     """The plant as it was described."""
     plant = chain.plant
-    structure = plant.structure
     rows = [("scheduling variable", f"{v.name}, {v.minimum:g} to {v.maximum:g} {v.unit}") for v in chain.axes.variables]
     rows += [("input", chain.axes.input), ("output", labelled(chain.axes.output_name, chain.axes.output_unit))]
-    if isinstance(structure, DiscreteTimeStructure):
-        orders = f"na {structure.na}, nb {structure.nb}, nk {structure.nk}, nc {structure.nc}, nd {structure.nd}"
-        rows.append(("structure", f"discrete time, {structure.sample_time_seconds:g} s; {orders}"))
-    elif isinstance(structure, ContinuousTimeStructure):
-        rows.append(("structure", f"continuous time; na {structure.na}, nb {structure.nb}"))
-    elif isinstance(structure, PhysicalFormStructure):
-        sides = [", ".join(map(_in_words, side)) for side in (structure.denominator, structure.numerator)]
-        rows.append(("structure", f"continuous time; output: {sides[0]}; input: {sides[1]}"))
-    else:
-        rows.append(("structure", "state space"))
+    rows.append(("structure", plant.structure.words))
     rows.append(("parameters", ", ".join(plant.parameter_names)))
     paragraphs = (plant.description,) if plant.description else ()
     return Section(f"The plant: {plant.name}", paragraphs, (Table(("what", "value"), tuple(rows), text_columns=2),))
-
-
-def _in_words(coefficient: PhysicalCoefficient) -> str:
-    known = "" if coefficient.fixed_at is None else f" = {coefficient.fixed_at:g}"
-    return labelled(coefficient.name, coefficient.unit) + known
 
 
 def experiments_section(chain: Chain) -> Section:
