@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from identification.methods.identify import identify
     from identification.methods.two_step import TwoStep
     from identification.models.model import Model
+    from identification.models.physical import Coefficient, PhysicalForm
     from identification.models.rational import RationalStructure
     from identification.models.state_space import StateSpaceStructure
     from identification.scheduling import ParameterDependence, ProductBasis, SchedulingVariable
@@ -24,11 +25,13 @@ if TYPE_CHECKING:
 _MODULES = {
     "BSpline": "bases.b_spline",
     "Chebyshev": "bases.chebyshev",
+    "Coefficient": "models.physical",
     "Estimate": "estimates",
     "FrequencyResponse": "signals",
     "MisuseError": "errors",
     "Model": "models.model",
     "ParameterDependence": "scheduling",
+    "PhysicalForm": "models.physical",
     "Polynomial": "bases.polynomial",
     "ProductBasis": "scheduling",
     "RationalStructure": "models.rational",
@@ -43,11 +46,13 @@ _MODULES = {
 __all__ = [
     "BSpline",
     "Chebyshev",
+    "Coefficient",
     "Estimate",
     "FrequencyResponse",
     "MisuseError",
     "Model",
     "ParameterDependence",
+    "PhysicalForm",
     "Polynomial",
     "ProductBasis",
     "RationalStructure",

@@ -27,7 +27,7 @@ class AlongScheduling(Method):
     """
 
     kind: ClassVar[str] = "along_scheduling"
-    takes: ClassVar[Takes] = Takes((VaryingRecord,), StateSpaceStructure)
+    takes: ClassVar[Takes] = Takes((VaryingRecord,), (StateSpaceStructure,))
 
     def refuses(self, task: Task) -> str | None:
         """One record in discrete time; bases 1, p_1, p_2, …"""

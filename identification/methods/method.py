@@ -42,16 +42,17 @@ class Takes:
     """The kinds of data and structures of a method, and whether it takes a start and a prior estimate."""
 
     data: tuple[type[Data], ...]
-    structure: type[Structure]
+    structures: tuple[type[Structure], ...]
     start: bool = False
     prior: bool = False
 
     def __str__(self) -> str:
-        return f"takes {' and '.join(NAMES[kind] for kind in self.data)} for a {self.structure.__name__}"
+        data, structures = (NAMES[kind] for kind in self.data), (one.__name__ for one in self.structures)
+        return f"takes {' and '.join(data)} for a {' or '.join(structures)}"
 
     def has(self, task: Task) -> bool:
         """Whether data and structure are of these kinds."""
-        return task.has_only(*self.data) and isinstance(task.structure, self.structure)
+        return task.has_only(*self.data) and isinstance(task.structure, self.structures)
 
 
 class Method(ABC):

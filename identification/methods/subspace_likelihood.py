@@ -24,7 +24,7 @@ class SubspaceLikelihood(Method):
     """
 
     kind: ClassVar[str] = "subspace_likelihood"
-    takes: ClassVar[Takes] = Takes((TimeRecord, FrequencyResponse), StateSpaceStructure, start=True)
+    takes: ClassVar[Takes] = Takes((TimeRecord, FrequencyResponse), (StateSpaceStructure,), start=True)
 
     refinement: StateSpaceLikelihood = field(default_factory=StateSpaceLikelihood)
 

@@ -14,6 +14,7 @@ from identification.lpv.joint_likelihood import JointLikelihood
 from identification.lti.prediction_error import PredictionError
 from identification.lti.rational_fit import RationalFit
 from identification.methods.method import Data, Method, Takes, Task, held_still
+from identification.models.physical import PhysicalForm, RationalForm
 from identification.models.rational import RationalStructure
 from identification.signals import FrequencyResponse, Measurement, TimeRecord
 from identification.spectral.local_polynomial import LocalPolynomial
@@ -38,7 +39,7 @@ class TwoStep(Method):
     """
 
     kind: ClassVar[str] = "two_step"
-    takes: ClassVar[Takes] = Takes((TimeRecord, FrequencyResponse), RationalStructure, prior=True)
+    takes: ClassVar[Takes] = Takes((TimeRecord, FrequencyResponse), (RationalStructure, PhysicalForm), prior=True)
 
     spectral: Spectral | None = None
     local: Any = None
@@ -46,28 +47,28 @@ class TwoStep(Method):
 
     def estimate(self, task: Task, progress: Progress) -> Estimate:
         """The model with its local ones; misuse of one experiment is named by its place and operating point."""
-        structure = cast(RationalStructure, task.structure)
+        structure = cast(RationalForm, task.structure)
         data = [self._fitted(structure, one, i, progress) for i, one in enumerate(held_still(task))]
         local = self._local_estimates(structure, data, progress)
         progress(0.8, "the parameter-varying model")
         found: Estimate = self.joint.estimate(structure, task.dependence, data, local, prior=task.prior)
         return _with_output_noise(replace(found, fitted=tuple(data)), task.data)
 
-    def _fitted(self, structure: RationalStructure, record: Measurement, index: int, progress: Progress) -> Measurement:
+    def _fitted(self, structure: RationalForm, record: Measurement, index: int, progress: Progress) -> Measurement:
         """The data themselves, or the response of a record where the local method takes those."""
         if not isinstance(record, TimeRecord) or self.spectral is None or self._takes_records:
             return record
         progress(0.05, f"the frequency response of experiment {index + 1}")
         with _place_named(index, record):
             response = self.spectral.estimate(record)
-        return response if structure.is_discrete else replace(response, sample_time=None)
+        return response if structure.is_discrete else replace(response, sample_time=None, held=record.held)
 
     @property
     def _takes_records(self) -> bool:
         return self.local is not None and self.local.data is TimeRecord
 
     def _local_estimates(
-        self, structure: RationalStructure, data: Sequence[Measurement], progress: Progress
+        self, structure: RationalForm, data: Sequence[Measurement], progress: Progress
     ) -> list[LocalEstimate]:
         estimates = []
         for i, measurement in enumerate(data):
@@ -83,7 +84,7 @@ class TwoStep(Method):
     @classmethod
     def usual(cls, task: Task) -> Self:
         """Records by their prediction errors where they can be, else by their frequency responses."""
-        structure = cast(RationalStructure, task.structure)
+        structure = cast(RationalForm, task.structure)
         if structure.is_discrete and not structure.delay:
             return cls()
         periodic = all(isinstance(one, FrequencyResponse) or one.period_count >= 2 for one in held_still(task))

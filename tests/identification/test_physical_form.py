@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from scipy import integrate, stats
 
+from identification import identify
 from identification.bases.polynomial import Polynomial
 from identification.errors import MisuseError, RangeError, ShapeError
 from identification.lpv.generalised_least_squares import GeneralisedLeastSquares
@@ -49,8 +50,7 @@ def measured(generator: np.random.Generator | None = None, relative: float = 0.0
 
 
 def identified(data: list[FrequencyResponse], structure=MOTOR, dependence=DEPENDENCE):
-    local = [RationalFit().estimate(structure, one) for one in data]
-    return JointLikelihood().estimate(structure, dependence, data, local)
+    return identify(data, structure, dependence)
 
 
 def test_a_motor_with_linear_inertia_is_exact_without_noise():
