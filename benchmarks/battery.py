@@ -2,8 +2,8 @@
 
 Fits local models of growing order to 13 measured impedance spectra and a parameter-varying model over all of them;
 then asks the diagnosis what a resistor with one RC arc lacks, at half charge and over all states of charge. Prints
-tables; --output writes them as JSON, --page the staircases as HTML. Relative error: root mean square over the
-frequencies of |Z − Ẑ|/|Z|.
+tables; --output writes them as JSON, --page the staircases as HTML. Relative error of the local
+and joint fits: root mean square over the frequencies of |Z − Ẑ|/|Z|; of the staircases ‖Z − Ẑ‖/‖Z‖.
 """
 
 import time

@@ -1,7 +1,7 @@
 """A motor with a flexible coupling: python -m benchmarks.motor_bench FOLDER --page motor.html.
 
 FOLDER holds MultisineTypeA.mat and MultisineTypeB.mat. From a rigid body the diagnosis is asked for what is missing;
-errors are root mean squares over the lines of |G − Ĝ|/|G|. In type B, whose multisine leaves lines out, the lines that
+errors are ‖G − Ĝ‖/‖G‖ over the lines. In type B, whose multisine leaves lines out, the lines that
 were not excited show the nonlinear part: what the output has there beyond the answer to the measured current, as the
 current that would cause it.
 """

@@ -8,11 +8,14 @@ import numpy as np
 from app.arrays import ComplexVector
 from app.conversion.effects import effect_documents, parameters_of, quantity_of
 from app.conversion.models import outcome_document, test_documents
+from app.schemas.comparisons import NoteDocument
 from app.schemas.diagnoses import EffectVisibility, Evidence, ExplainedResponse, MissingResponse, RankedEffect, Verdict
+from app.schemas.effects import PlacedEffectDocument
 from app.schemas.experiments import Experiment
 from identification.diagnosis import evidence as refits
 from identification.diagnosis.diagnose import Diagnosis, Visibility
 from identification.diagnosis.missing import explained_response, missing_response
+from identification.diagnosis.remainder import MATERIAL
 from identification.diagnosis.scores import Score
 
 LAID_OVER = 3
@@ -21,6 +24,7 @@ VERDICTS: dict[str, Verdict] = {
     "explained": "explained",
     "partly explained": "partlyExplained",
     "not in the library": "notInTheLibrary",
+    "cannot be judged": "cannotBeJudged",
 }
 
 
@@ -31,6 +35,12 @@ def findings(found: Diagnosis, experiments: Sequence[Experiment]) -> dict[str, A
     before, remaining = test_documents((found.lack_of_fit, found.remaining))
     return {
         "verdict": VERDICTS[found.verdict],
+        "reason": found.reason,
+        "restBefore": found.rest_before,
+        "restAfter": found.rest_after,
+        "material": MATERIAL,
+        "noneOfTheseWeight": found.none_weight,
+        "notes": [NoteDocument(experiment_id=experiments[m].id, text=text).as_json() for m, text in found.notes],
         "confident": bool(found.confident),
         "announced": [one.score.candidate.effect.kind for one in found.announced],
         "lackOfFit": before.as_json(),
@@ -69,14 +79,25 @@ def _ranked(found: Diagnosis, score: Score) -> RankedEffect:
 
 def _evidence(one: refits.Evidence) -> Evidence:
     return Evidence(
-        effect=effect_documents(one.fit.model)[-1],
+        effect=_without_interval(one),
         bic=one.bic,
         weight=one.weight,
+        share=one.share,
+        at_bound=one.at_bound,
         chi_square_explained=float(one.explained),
         added_parameters=one.parameters,
         chi_square_per_parameter=float(one.explained_per_parameter),
         outcome=outcome_document(one.fit.outcome),
     )
+
+
+def _without_interval(one: refits.Evidence) -> PlacedEffectDocument:
+    """The effect as fitted; on a bound of its range it has no interval."""
+    found = effect_documents(one.fit.model)[-1]
+    if not one.at_bound:
+        return found
+    parameters = [each.model_copy(update={"standard_deviation": None}) for each in found.parameters]
+    return found.model_copy(update={"standard_deviations": None, "parameters": parameters})
 
 
 def _visibility(one: Visibility) -> EffectVisibility:

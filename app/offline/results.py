@@ -129,9 +129,13 @@ def write_diagnosis(folder: Path, found: Diagnosis) -> None:
     table = Table("effect", "weight", "amplitude", "p adjusted", title=f"{found.verdict}: {names}")
     for one in found.ranking[:MOST_RANKED]:
         weight = "" if one.evidence is None else f"{one.evidence.weight:.3f}"
-        size = "" if one.evidence is None else amplitude(one.evidence.effect)
+        size = "" if one.evidence is None else amplitude(one.evidence.effect) + " at its bound" * one.evidence.at_bound
         table.add_row(one.kind, weight, size, f"{one.adjusted_p_value:.2g}")
+    if found.none_of_these_weight is not None and found.announced:
+        table.add_row("none of these", f"{found.none_of_these_weight:.3f}", "", "")
     _say(folder, table)
+    if found.reason:
+        Console().print(found.reason, markup=False)
 
 
 def write_report(path: Path, chain: "Chain", title: str = "", introduction: str = "") -> None:

@@ -6,7 +6,7 @@ from pydantic import Field, model_validator
 
 from app.arrays import ComplexVector, Matrix, Vector
 from app.schemas.common import CamelModel, Double, Integer, Timestamp
-from app.schemas.comparisons import ExperimentIds
+from app.schemas.comparisons import ExperimentIds, NoteDocument
 from app.schemas.designs import DesignRequest
 from app.schemas.effects import EffectParameter, PlacedEffectDocument
 from app.schemas.experiments import Identifier
@@ -14,7 +14,7 @@ from app.schemas.outcomes import OutcomeDocument, TestDocument
 from app.schemas.plants import LongText, Text
 
 Kind = Annotated[str, Field(min_length=1, max_length=64)]
-Verdict = Literal["nothingMissing", "explained", "partlyExplained", "notInTheLibrary"]
+Verdict = Literal["nothingMissing", "explained", "partlyExplained", "notInTheLibrary", "cannotBeJudged"]
 Domain = Literal["general", "mechanical", "impedance"]
 AmplitudeDegree = Annotated[Integer, Field(ge=0, le=3)]
 Seed = Annotated[Integer, Field(ge=0)]
@@ -59,7 +59,15 @@ class Evidence(CamelModel):
 
     effect: PlacedEffectDocument = Field(description="as fitted, amplitude in its unit with standard deviations")
     bic: Double = Field(description="−2 ln L + parameters · ln(numbers compared); low is good")
-    weight: Double = Field(description="share of exp(−BIC/2) among the refitted effects and the model as it is")
+    weight: Double = Field(
+        description="share of exp(−BIC/2) among the refitted effects and none of these, times `share`; what an effect"
+        " leaves belongs to none of these"
+    )
+    share: Double = Field(default=1.0, description="of what noise does not explain, what this effect takes away")
+    at_bound: bool = Field(
+        default=False,
+        description="held by an end of its physical range: no estimate, and no interval",
+    )
     chi_square_explained: Double = Field(description="fall of minus twice the log-likelihood")
     added_parameters: Integer
     chi_square_per_parameter: Double
@@ -133,8 +141,20 @@ class Diagnosis(CamelModel):
     amplitude_degree: Integer
     mean_value: bool
     seed: Integer
-    verdict: Verdict
-    confident: bool = Field(description="one effect has over 95 % of the weight and leaves only noise")
+    verdict: Verdict = Field(
+        description="explained: noise explains what the best effect leaves, or it is below what is material;"
+        " partlyExplained: more is left, or the effect was held by an end of its range; notInTheLibrary: something is"
+        " missing and no effect is better than none of these; cannotBeJudged: `reason` says why"
+    )
+    reason: str = Field(default="", description="for the verdict, with the numbers that it stands on")
+    rest_before: Double | None = Field(
+        default=None, description="what the model leaves beyond noise, relative to the output at the excited lines"
+    )
+    rest_after: Double | None = Field(default=None, description="the same with the best announced effect")
+    material: Double | None = Field(default=None, description="the rest below which nothing is called missing")
+    none_of_these_weight: Double | None = Field(default=None, description="the weight that the effects leave")
+    notes: list[NoteDocument] = Field(default_factory=list, description="what to mind of single experiments")
+    confident: bool = Field(description="one effect has over 95 % of the weight of all and explains what is missing")
     announced: list[str] = Field(description="kinds that cannot be told apart here, best first; empty when none")
     lack_of_fit: TestDocument = Field(description="of the model, its parameters fitted to these experiments")
     remaining: TestDocument = Field(description="lack of fit with the best announced effect")

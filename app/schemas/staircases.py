@@ -1,12 +1,12 @@
 """Staircases: effects added to a model one after the other until noise explains what is left."""
 
-from typing import Annotated, Literal
+from typing import Annotated
 
 from pydantic import Field, model_validator
 
 from app.schemas.common import CamelModel, Double, Integer, Timestamp
 from app.schemas.comparisons import ExperimentIds
-from app.schemas.diagnoses import AmplitudeDegree, Domain, Kind, Seed
+from app.schemas.diagnoses import AmplitudeDegree, Domain, Kind, Seed, Verdict
 from app.schemas.experiments import Identifier
 from app.schemas.outcomes import TestDocument
 from app.schemas.plants import LongText, Text
@@ -64,7 +64,7 @@ class Staircase(CamelModel):
     experiment_ids: list[str]
     held_out_experiment_ids: list[str]
     seed: Integer
-    conclusion: Literal["nothingMissing", "explained", "notInTheLibrary"]
+    conclusion: Verdict
     steps: list[StaircaseStep]
 
 

@@ -29,7 +29,8 @@ class Batch:
     `ends` (M, 2, L): what correlated noise at the ends of a record does to the mean period, see `noise.NoiseOfMean`.
     `scaled`: False when only the ratios of the variances are known. `members`: places in the user's list. `logged`:
     quantities (M,) that were written down beside the scheduling variables, by their names. `disturbances`: of each
-    record, taken off the outputs; `notes`: what else is to be said of measurements, by their place in the list.
+    record, taken off the outputs; `smoothed`: whether the responses stand for records
+    that do not repeat; `notes`: what else is to be said of measurements, by their place in the list.
     `held`: how models in continuous time see the input, None where it is band limited; `hold_stated`: that was said.
     """
 
@@ -49,6 +50,7 @@ class Batch:
     scaled: bool = True
     between: tuple[FloatArray, ...] = field(default=())
     disturbances: tuple[tuple[Disturbance, ...], ...] = ()
+    smoothed: bool = False
     notes: tuple[tuple[int, str], ...] = ()
     logged: Mapping[str, FloatArray] = field(default_factory=dict)
     held: HeldInput | None = None

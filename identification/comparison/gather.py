@@ -60,7 +60,15 @@ def _with_logged(parts: Sequence[Batch], logged: Sequence[Mapping[str, float]]) 
 
 
 def _grid(part: Batch) -> object:
-    kind = (part.signals is None, part.scaled, part.freedom, part.raw_freedom, part.held, part.hold_stated)
+    kind = (
+        part.signals is None,
+        part.scaled,
+        part.freedom,
+        part.raw_freedom,
+        part.held,
+        part.hold_stated,
+        part.smoothed,
+    )
     return (*kind, part.omega.tobytes())
 
 
@@ -82,6 +90,7 @@ def _joined(group: list[Batch]) -> Batch:
         half_width=first.half_width,
         ends=ends,
         scaled=first.scaled,
+        smoothed=first.smoothed,
         held=first.held,
         hold_stated=first.hold_stated,
         between=between,
@@ -97,7 +106,7 @@ def _one(m: int, data: Measurement, mean_value: bool) -> Batch:
         return _of_response(m, data)
     if data.period is None or data.period_count < 2:
         response = _of_response(m, LocalPolynomial().estimate(data))
-        return replace(response, held=data.held, hold_stated=data.hold is not None)
+        return replace(response, smoothed=True, held=data.held, hold_stated=data.hold is not None)
     return _of_periodic(m, data, mean_value)
 
 

@@ -2,16 +2,17 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 
 from identification.arrays import FloatArray
 from identification.comparison.batch import Batch
 from identification.comparison.lack_of_fit import lack_of_fit
-from identification.diagnosis.evidence import Evidence, indistinguishable, refit_short_list
+from identification.diagnosis.evidence import LONGER, Evidence, ShortList, indistinguishable, refit_short_list
+from identification.diagnosis.remainder import SmoothRemainder, rest
 from identification.diagnosis.scores import Score, score_tests
 from identification.diagnosis.signatures import Candidate, candidates
+from identification.diagnosis.verdict import PARTLY, Rest, Verdict, judged, why_not_all, why_not_judged
 from identification.effects.library import library
 from identification.effects.second_variable import with_logged
 from identification.errors import MisuseError
@@ -21,12 +22,8 @@ from identification.models.model import Model, require_matching
 from identification.outcome import TestResult
 from identification.places.place import Effect
 
-Verdict = Literal["nothing missing", "explained", "partly explained", "not in the library"]
 DETECTION = 1.959963984540054 + 1.2815515655446004
 LEVEL = 0.05
-STRICT = 1e-3
-PARTLY = 0.3
-ALMOST = 0.98
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,9 +45,12 @@ class Diagnosis:
     """What is missing from a model.
 
     `base`: the model refitted to the data; `lack_of_fit` before, `remaining` after the best effect; `scores` of all
-    visible effects, smallest adjusted p first; `evidence`: the refitted short list, best first; `announced`: those of
-    it that cannot be told apart, empty when no effect passes the test of the whole family at 5 %; `confusability`
-    (E, E): squared cosine between the signatures of `scores`; `visibility` of every effect of the library.
+    visible effects, smallest adjusted p first; `evidence`: the refitted short list, best first; `announced`: those
+    of it that cannot be told apart, empty when no effect passes the test of the whole family at 5 % or none is
+    better than "none of these", whose share of all weights is `none_weight`; `reason` for the verdict;
+    `rest_before`, `rest_after`: what is left beyond noise, relative to the output; `notes` on measurements by their
+    places; `confusability` (E, E): squared cosine between the signatures of `scores`; `visibility` of every effect
+    of the library.
     """
 
     base: Fit
@@ -63,6 +63,11 @@ class Diagnosis:
     verdict: Verdict
     confusability: FloatArray
     visibility: tuple[Visibility, ...]
+    reason: str = ""
+    rest_before: float = 0.0
+    rest_after: float = 0.0
+    none_weight: float = 1.0
+    notes: tuple[tuple[int, str], ...] = ()
 
     @property
     def best(self) -> Evidence | None:
@@ -70,9 +75,18 @@ class Diagnosis:
         return self.announced[0] if self.announced else None
 
     @property
+    def _explained(self) -> bool:
+        return self.verdict == "explained" and Rest(self.remaining, self.rest_after).acceptable
+
+    @property
+    def left(self) -> Rest:
+        """What the model leaves as it is."""
+        return Rest(self.lack_of_fit, self.rest_before)
+
+    @property
     def confident(self) -> bool:
-        """Whether one effect has more than 95 % of the weight and leaves nothing that noise does not explain."""
-        return self.best is not None and self.best.weight > 1 - LEVEL and self.remaining.p_value >= STRICT
+        """Whether one effect has more than 95 % of the weight of all and explains what is missing."""
+        return self.best is not None and self.best.weight > 1 - LEVEL and self._explained
 
 
 def rows_of(model: Model, batches: Sequence[Batch]) -> Rows:
@@ -100,55 +114,59 @@ def diagnose(
     measurements are not those of the model's time domain or range, or leave nothing to judge by.
     """
     rows = rows_of(model, batches)
-    base = fit(model, rows)
+    base = fit(model, rows, iterations=LONGER)
     if rows.count <= len(base.tangents):
         raise MisuseError("there are not more numbers than parameters; measure more lines", "experiments")
-    before = misfit("lack of fit", base)
-    judged = candidates(base, with_logged(library() if effects is None else effects, batches), degree)
-    scores = score_tests(base, [one for one in judged if one.signatures], np.random.default_rng(seed))
+    judged_effects = candidates(base, with_logged(library() if effects is None else effects, batches), degree)
+    seen = [one for one in judged_effects if one.signatures]
+    scores = score_tests(base, seen, np.random.default_rng(seed))
     ordered = tuple(sorted(scores, key=lambda one: (one.adjusted_p, one.p_value, -one.statistic)))
     missing = bool(ordered) and ordered[0].adjusted_p < LEVEL
-    evidence = refit_short_list(base, ordered, origin=model) if missing else ()
-    announced = indistinguishable(evidence) if evidence and evidence[0].bic < base.cost else ()
-    remaining = misfit("remaining lack of fit", announced[0].fit) if announced else before
-    share = _explained_share(base, announced)
+    listed = refit_short_list(base, ordered if missing else (), origin=model)
+    cannot = why_not_judged(base, batches)
+    announced = () if cannot else _announced(listed)
+    before = _rest("lack of fit", base, seed)
+    after = _rest("remaining lack of fit", announced[0].fit, seed) if announced else before
+    verdict, reason = judged(before, after, announced, cannot, why_not_all(batches))
     return Diagnosis(
         base,
-        before,
+        before.test,
         ordered,
-        evidence,
+        listed.evidence,
         announced,
-        remaining,
-        share,
-        _verdict(before, announced, remaining, share),
+        after.test,
+        announced[0].share if announced else 0.0,
+        verdict,
         confusability(ordered),
-        tuple(_visibility(one) for one in judged),
+        tuple(_visibility(one) for one in judged_effects),
+        reason,
+        before.share,
+        after.share,
+        listed.none_weight,
+        tuple(sorted(note for batch in batches for note in batch.notes)),
     )
 
 
-def misfit(name: str, found: Fit) -> TestResult:
-    """Lack of fit of a fitted model; nothing to test (p = 1) where the size of the noise is not known."""
-    energy = float(found.residual @ found.residual)
-    freedom = found.rows.count - len(found.tangents)
+def _announced(listed: ShortList) -> tuple[Evidence, ...]:
+    """The best effects, where they are better than "none of these" and take away a fair share of what is missing."""
+    found = [one for one in listed.evidence if one.announceable]
+    if not found or found[0].beside >= listed.none_beside:
+        return ()
+    alike = indistinguishable(found)
+    return alike if alike[0].share >= PARTLY else ()
+
+
+def _rest(name: str, found: Fit, seed: int) -> Rest:
+    noise = 1.0 if found.rows.scaled else SmoothRemainder(found).of(found).noise
+    return Rest(misfit(name, found, seed), rest(found, noise))
+
+
+def misfit(name: str, found: Fit, seed: int = 0) -> TestResult:
+    """Lack of fit of a fitted model; where the size of the noise is not known, whether what it leaves is smooth."""
     if not found.rows.scaled:
-        return TestResult(name, energy, float(freedom), 1.0)
-    return lack_of_fit(name, energy, freedom, found.rows.noise_freedom)
-
-
-def _explained_share(base: Fit, announced: Sequence[Evidence]) -> float:
-    """How much of what noise does not explain the best effect takes away; 1 when there was nothing to explain."""
-    if not announced or not base.rows.scaled:
-        return 1.0
-    expected = base.rows.count - len(base.tangents)
-    return float(min(announced[0].explained / max(base.cost - expected, announced[0].explained, 1e-300), 1.0))
-
-
-def _verdict(before: TestResult, announced: Sequence[Evidence], remaining: TestResult, share: float) -> Verdict:
-    if not announced:
-        return "not in the library" if before.p_value < STRICT else "nothing missing"
-    if remaining.p_value >= STRICT or share >= ALMOST:
-        return "explained"
-    return "partly explained" if share >= PARTLY else "not in the library"
+        return SmoothRemainder(found).test(name, found, seed)
+    energy = float(found.residual @ found.residual)
+    return lack_of_fit(name, energy, found.rows.count - len(found.tangents), found.rows.noise_freedom)
 
 
 def confusability(scores: Sequence[Score]) -> FloatArray:

@@ -6,6 +6,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from identification.arrays import FloatArray
+from identification.comparison.lack_of_fit import lack_of_fit
+from identification.diagnosis.remainder import MATERIAL, Remainder, SmoothRemainder, rest
 from identification.diagnosis.scans import misfit_is_large, scanned_starts, states_scan
 from identification.diagnosis.scores import Score
 from identification.extension.fit import Fit, fit
@@ -18,22 +20,30 @@ SHORT_LIST = 8
 STARTS, NEAR, APART = 3, 0.5, 2
 LIKELY = 6.0
 ALIKE = 2.0
-HOPELESS = 60.0
+HOPELESS, HOPELESS_SHARE = 60.0, 1.5
+HELD = 10.0
+LONGER = 40
+STRICT = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
 class Evidence:
     """An effect after its refit with θ; `explained`: the fall of minus twice the log-likelihood; low `bic` is good.
 
-    `weight`: share of exp(−BIC/2) among the short list and the model as it is. Both count the residuals of noise of
-    unknown size as `effective_count` does.
+    `remainder`: what it leaves beside noise; `beside`: minus twice the log-likelihood with that, with all prices;
+    `share` of what the model lacked that it takes away; `weight`: its share of all, "none of these" included.
+    `at_bound`: it was held by the end of its physical range, so that its value is no estimate.
     """
 
     score: Score
     fit: Fit
+    remainder: Remainder
     explained: float
     parameters: int
     bic: float
+    beside: float
+    share: float
+    at_bound: bool = False
     weight: float = 0.0
 
     @property
@@ -41,19 +51,40 @@ class Evidence:
         """χ² explained for each added parameter."""
         return self.explained / self.parameters
 
+    @property
+    def announceable(self) -> bool:
+        """Whether the refit came to an end, and not at an amplitude of nought."""
+        return self.fit.outcome.ok and bool(np.any(self.fit.model.effects[-1].coefficients))
+
+
+@dataclass(frozen=True, eq=False)
+class ShortList:
+    """The refitted effects, best first, and "none of these": remainder, `beside` as in `Evidence`, weight."""
+
+    evidence: tuple[Evidence, ...]
+    none: Remainder
+    none_beside: float
+    none_weight: float
+
 
 def refit_short_list(
     base: Fit, scores: Sequence[Score], length: int = SHORT_LIST, origin: Model | None = None
-) -> tuple[Evidence, ...]:
+) -> ShortList:
     """θ and each of the effects of largest score together, from several starts, with their weights, best first.
 
-        BIC = −2 ln L + (number of parameters) ln R,   weight ∝ exp(−BIC/2)
+        BIC_j = −2 ln L + (number of parameters) ln R,   weight_j = x_j e^{−BIC_j/2}/Σ e^{−BIC/2}
 
-    Further parameters that are searched but not fitted cost 2 ln(number of variants). Where the size of the noise is
-    not known, R is the effective number of residuals of the best refit, and ln L is that of so many. Where much is
-    missing, effects that state a scan are on the list in any case and begin from the best of it too; `origin`: the
-    model as it was given, around which it is made.
+    x_j is the share of what is missing that the effect takes away; what it leaves is none of these. Their own
+    e^{−BIC/2} is held against that of the best effect with r ~ N(s_j e, V + τ_j² S) for both, without s_j for none,
+    τ by restricted likelihood (`SmoothRemainder`), so that a free smooth response wins where no effect has the
+    shape. Further parameters that are searched but not fitted cost 2 ln(number of variants), values on a physical
+    bound `HELD`. Where the size of the noise is not known, R is the effective number of residuals of the best
+    refit, and ln L is that of so many. Where much is missing, effects that state a scan are on the list in any case
+    and begin from the best of it too; `origin`: the model as it was given, around which it is made.
     """
+    model = SmoothRemainder(base)
+    none = model.of(base)
+    beside = _penalised(none, base)
     ordered = sorted(scores, key=lambda score: -score.statistic)
     large = misfit_is_large(base)
     scanned = {id(score) for score in ordered if large and states_scan(score.candidate.effect)}
@@ -61,15 +92,18 @@ def refit_short_list(
     found: list[tuple[Score, Fit]] = []
     least = np.inf
     for score in ordered:
-        one = _refitted(base, score, least + HOPELESS, origin if id(score) in scanned else None)
+        hopeless = (1.0 if base.rows.scaled else HOPELESS_SHARE) * least + HOPELESS
+        one = _refitted(base, score, hopeless, origin if id(score) in scanned else None)
         if one is not None:
             found.append((score, one))
             least = min(least, float(one.residual @ one.residual))
     if not found:
-        return ()
+        return ShortList((), none, beside, 1.0)
     best = min((one for _, one in found), key=lambda one: one.cost)
     count = effective_count(best.rows, best.residual)
-    return tuple(sorted(_weighted(base, [_judged(base, *one, count) for one in found]), key=lambda one: one.bic))
+    evidence = sorted((_judged(model, *pair, count) for pair in found), key=lambda one: one.bic)
+    weighted = _weighted(beside, evidence)
+    return ShortList(tuple(weighted), none, beside, 1 - sum(one.weight for one in weighted))
 
 
 def effective_count(rows: Rows, residual: FloatArray) -> float:
@@ -102,13 +136,40 @@ def _compared(rows: Rows) -> FloatArray:
     return np.concatenate([batch.compared for batch in rows.batches]).astype(np.float64)
 
 
-def _judged(base: Fit, score: Score, found: Fit, count: float) -> Evidence:
-    effect = found.model.effects[-1]
+def _penalised(remainder: Remainder, found: Fit) -> float:
+    price = remainder.hyperparameters * float(np.log(found.rows.count))
+    return min(remainder.immaterial, remainder.cost + price)
+
+
+def _judged(model: SmoothRemainder, score: Score, found: Fit, count: float) -> Evidence:
+    base, effect = model.base, found.model.effects[-1]
     parameters = len(effect.parameters())
     searched = 0.0 if effect.effect.fitted_names() else 2 * np.log(max(_tried(score), 1))
+    remainder = model.of(found)
+    bound = on_bound(effect, found)
     explained = (base.cost - found.cost) * count / base.rows.count
-    bic = base.cost - explained + parameters * np.log(count) + searched
-    return Evidence(score, found, explained, parameters, float(bic))
+    price = parameters * np.log(count) + searched + HELD * bound
+    beside = _penalised(remainder, found) + parameters * np.log(base.rows.count)
+    share = explained_share(base, found, remainder.noise)
+    bic = float(base.cost - explained + price)
+    return Evidence(score, found, remainder, explained, parameters, bic, float(beside), share, bound)
+
+
+def explained_share(base: Fit, found: Fit, noise: float = 1.0) -> float:
+    """How much of what noise does not explain a fit takes away; one where what it leaves is noise or immaterial."""
+    lacked, left = (
+        float(one.residual @ one.residual) / noise - (one.rows.count - len(one.tangents)) for one in (base, found)
+    )
+    if lacked <= 0 or left <= 0 or rest(found, noise) <= MATERIAL or noise_explains(found, noise):
+        return 1.0
+    return float(np.clip(1 - left / lacked, 0.0, 1.0))
+
+
+def noise_explains(found: Fit, noise: float = 1.0) -> bool:
+    """Whether the lack of fit of a fit has p of a thousandth or more with noise of this size."""
+    energy = float(found.residual @ found.residual) / noise
+    freedom = found.rows.count - len(found.tangents)
+    return lack_of_fit("", energy, freedom, found.rows.noise_freedom).p_value >= STRICT
 
 
 def _refitted(base: Fit, score: Score, hopeless: float, origin: Model | None) -> Fit | None:
@@ -124,23 +185,28 @@ def _refitted(base: Fit, score: Score, hopeless: float, origin: Model | None) ->
 
     best = min(found, key=price)
     best = min([best, *_moved(best)], key=price)
-    return None if _outside(best.model.effects[-1], best) else best
+    if not best.outcome.ok and float(best.residual @ best.residual) < hopeless:
+        best = fit(best.model, base.rows, iterations=LONGER, tolerance=0.05, start=best.flows)
+    return None if _beyond(best.model.effects[-1]) else best
 
 
 def _moved(found: Fit) -> list[Fit]:
     """Fits in which a further parameter of the effect changes over the range of p, from where it stands still."""
-    last, rest = found.model.effects[-1], found.model.effects[:-1]
+    last, rest_ = found.model.effects[-1], found.model.effects[:-1]
     points = np.concatenate([flow.setting.points for flow in found.flows])
     moving = [replace(last, effect=one) for one in may_move(last.effect, points)]
-    models = [replace(found.model, effects=(*rest, one), joint_covariance=None) for one in moving]
+    models = [replace(found.model, effects=(*rest_, one), joint_covariance=None) for one in moving]
     return [fit(model, found.rows, iterations=13, tolerance=0.05, start=found.flows) for model in models]
 
 
-def _outside(one: PlacedEffect, found: Fit) -> bool:
-    """Whether the fit has left the physical range, or was held by its ends: then it is not this effect."""
+def _beyond(one: PlacedEffect) -> bool:
+    """Whether the amplitude has left its physical range: then it is not this effect."""
     bound = one.effect.largest
-    if bound is not None and np.max(abs(one.coefficients)) > 1.2 * bound:
-        return True
+    return bound is not None and bool(np.max(abs(one.coefficients)) > 1.2 * bound)
+
+
+def on_bound(one: PlacedEffect, found: Fit) -> bool:
+    """Whether the further parameters of an effect were held by an end of their range."""
     low, high = one.effect.limits(found.flows[0])
     values = one.effect.values()
     return bool(np.any(values <= low * (1 + 1e-6)) or np.any(values >= high * (1 - 1e-6)))
@@ -172,11 +238,13 @@ def _attempt(base: Fit, score: Score, variant: int, hopeless: float) -> Fit:
     return fit(absent, base.rows, iterations=13, tolerance=0.05, hopeless=hopeless, start=base.flows)
 
 
-def _weighted(base: Fit, found: Sequence[Evidence]) -> list[Evidence]:
-    values = np.array([base.cost, *(one.bic for one in found)])
-    weights = np.exp(-(values - values.min()) / 2)
-    weights /= weights.sum()
-    return [replace(one, weight=float(w)) for one, w in zip(found, weights[1:], strict=True)]
+def _weighted(none: float, ordered: Sequence[Evidence]) -> list[Evidence]:
+    """With the weights of all; `none`: minus twice the log-likelihood of the smooth remainder alone, with its price."""
+    values = np.array([one.bic for one in ordered])
+    against = ordered[0].bic + none - ordered[0].beside
+    likely = np.exp(-(np.append(values, against) - min(values.min(), against)) / 2)
+    likely /= likely.sum()
+    return [replace(one, weight=float(w) * one.share) for one, w in zip(ordered, likely, strict=False)]
 
 
 def indistinguishable(ordered: Sequence[Evidence], share: float = 0.95) -> tuple[Evidence, ...]:
@@ -192,12 +260,13 @@ def indistinguishable(ordered: Sequence[Evidence], share: float = 0.95) -> tuple
         first = simplest([one for one in alike if one.bic <= best.bic + ALIKE])
         return (first, *(one for one in alike if one is not first))
     kept: list[Evidence] = []
-    total = sum(one.weight for one in ordered)
-    for one in ordered:
-        gathered = sum(other.weight for other in kept)
-        if kept and gathered >= share * total and one.bic > ordered[0].bic + LIKELY:
+    likely = np.exp(-(np.array([one.bic for one in ordered]) - min((one.bic for one in ordered), default=0.0)) / 2)
+    gathered = 0.0
+    for one, own in zip(ordered, likely, strict=True):
+        if kept and gathered >= share * likely.sum() and one.bic > ordered[0].bic + LIKELY:
             break
         kept.append(one)
+        gathered += own
     return tuple(kept)
 
 

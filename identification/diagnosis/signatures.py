@@ -18,6 +18,7 @@ INVISIBLE = 1e-4
 RECORDS = "it acts on signals, which only records of at least two periods show; these experiments are not all periodic"
 TWICE = "the model has it already; several would only imitate a curve that is not in the library"
 SHAPED = "the model has a curve of fitted shape in this place already, and two of them can imitate a third"
+FEW_POINTS = "it needs {} operating points, and there are {}: with fewer a lower order fits them as well"
 LOGGED = "no quantity was logged for every one of these experiments"
 
 
@@ -75,6 +76,9 @@ def _candidate(fit: Fit, effect: Effect, degree: int, space: FloatArray) -> Cand
         return Candidate(
             effect, (), why_not=effect.unjudged or (RECORDS if effect.needs_records else LOGGED), judged=False
         )
+    distinct = _distinct_points(fit)
+    if distinct < effect.points_needed:
+        return Candidate(effect, (), why_not=FEW_POINTS.format(effect.points_needed, distinct), judged=False)
     taken = _taken(effect, [one.effect for one in fit.model.effects])
     if taken:
         return Candidate(effect, (), why_not=taken, judged=False)
@@ -90,6 +94,12 @@ def _candidate(fit: Fit, effect: Effect, degree: int, space: FloatArray) -> Cand
     seen = tuple(one for one in found if one is not None)
     why = "" if seen else effect.unseen
     return Candidate(effect, seen, effect.looked_at(fit.flows[0]), why)
+
+
+def _distinct_points(fit: Fit) -> int:
+    """How many values the scheduling variable with most of them takes."""
+    points = np.concatenate([flow.setting.points for flow in fit.flows])
+    return max((len(np.unique(column)) for column in points.T), default=1)
 
 
 def _taken(effect: Effect, there: Sequence[Effect]) -> str:

@@ -2,26 +2,28 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 
 from identification.comparison.batch import EXCITED, Batch
-from identification.diagnosis.diagnose import STRICT, Diagnosis, diagnose
+from identification.diagnosis.cross_validation import bears_out
+from identification.diagnosis.diagnose import Diagnosis, diagnose
+from identification.diagnosis.evidence import LONGER, on_bound
+from identification.diagnosis.verdict import Verdict
 from identification.extension.fit import Fit, fit
 from identification.models.model import Model
 from identification.places.place import Effect
 from identification.places.simulate import NoSteadyStateError
 
 LARGEST = 4
-NEGLIGIBLE = 0.005
+MOSTLY = 0.25
 
 
 @dataclass(frozen=True, eq=False)
 class Step:
     """A version of the model: its fit, relative errors on fitted and held-out data, and the diagnosis of what it lacks.
 
-    Errors are root mean squares of Y − Ŷ at the excited lines over those of Y; `held_out_error` None without such data.
+    Errors are those of `relative_error`; `held_out_error` None without such data.
     """
 
     fit: Fit
@@ -36,12 +38,10 @@ class Step:
 
 
 def relative_error(model: Model, batches: Sequence[Batch]) -> float:
-    """‖Y − Ŷ‖/‖Y‖ over the excited lines; each line by its own size where no noise is known (relative weighting)."""
+    """The error of a model, everywhere: ‖Y − Ŷ‖/‖Y‖ over the excited lines that are compared, of all measurements."""
     error = size = 0.0
     for batch in batches:
         used = np.where((batch.classes == EXCITED) & np.isfinite(batch.variances), 1.0, 0.0)
-        if not batch.scaled:
-            used = used / batch.variances
         error += float(np.sum(used * abs(batch.outputs - model.output(batch)) ** 2))
         size += float(np.sum(used * abs(batch.outputs) ** 2))
     return float(np.sqrt(error / size))
@@ -56,47 +56,62 @@ def staircase(
     largest: int = LARGEST,
     seed: int = 0,
 ) -> tuple[Step, ...]:
-    """Diagnose, add the announced effect of most weight, fit θ and all effects together, and again.
+    """Diagnose, add the best announced effect that cross-validation bears out, fit all together, and again.
 
-    Ends at the noise floor (no effect is announced), after `largest` effects, or when an effect would raise the error
-    on held-out data or leave the model without a steady state there.
+    Ends when no effect is announced, after `largest` effects, or when every announced effect would raise the error on
+    data that were left out of the fit (`cross_validation`) or leave the model without a steady state. Held-out data are
+    looked at for the report only.
     """
     first = diagnose(model, batches, effects, degree, seed)
     steps = [_step(first.base, batches, held_out, first)]
-    while (best := steps[-1].diagnosis.best) is not None and len(steps) <= largest:
+    while steps[-1].diagnosis.announced and len(steps) <= largest:
+        grown = _grown(steps[-1].diagnosis)
+        if grown is None:
+            break
         try:
-            grown = refined(best.fit)
-            found = _step(grown, batches, held_out, diagnose(grown.model, batches, effects, degree, seed))
+            steps.append(_step(grown, batches, held_out, diagnose(grown.model, batches, effects, degree, seed)))
         except NoSteadyStateError:
             break
-        if _rises(found.held_out_error, steps[-1].held_out_error):
-            break
-        steps.append(found)
     return tuple(steps)
+
+
+def _grown(found: Diagnosis) -> Fit | None:
+    """The model with the first of the announced effects that does not raise the error on data left out of the fit.
+
+    What was held by an end of its physical range is announced and not built on.
+    """
+    for one in (each for each in found.announced if not each.at_bound):
+        try:
+            grown = refined(one.fit)
+            if grown.outcome.ok and bears_out(found.base, grown):
+                return grown
+        except NoSteadyStateError:
+            continue
+    return None
 
 
 def refined(found: Fit) -> Fit:
     """A fit of the short list carried on to its minimum, with the covariance of all its parameters."""
-    return fit(found.model, found.rows, exact=found.rows.scaled, start=found.flows)
+    return fit(found.model, found.rows, iterations=LONGER, exact=found.rows.scaled, start=found.flows)
 
 
-def conclusion(steps: Sequence[Step]) -> Literal["nothing missing", "explained", "not in the library"]:
-    """What the staircase has come to: effects explain what is missing only when the last model passes the test.
+def conclusion(steps: Sequence[Step]) -> Verdict:
+    """What the staircase has come to: effects explain what is missing only when the last model leaves noise.
 
-    Where the size of the noise is not known there is no such test, and effects that were added count as explaining.
+    Or so little that it does not matter; "partly explained" where effects took away three quarters of it or more.
     """
-    last, first = steps[-1].diagnosis, steps[0].diagnosis
-    excess = last.lack_of_fit.statistic - last.lack_of_fit.degrees_of_freedom
-    at_first = first.lack_of_fit.statistic - first.lack_of_fit.degrees_of_freedom
-    if last.lack_of_fit.p_value >= STRICT or excess <= NEGLIGIBLE * at_first:
-        return "explained" if len(steps) > 1 else "nothing missing"
-    return "not in the library"
+    last = steps[-1].diagnosis
+    if len(steps) == 1:
+        return last.verdict
+    if last.verdict == "cannot be judged" and not last.left.acceptable:
+        return "cannot be judged"
+    if last.left.acceptable and not last.announced:
+        held = any(on_bound(one, last.base) for one in last.base.model.effects)
+        return "partly explained" if held else "explained"
+    lacked = steps[0].diagnosis.left.share
+    return "partly explained" if last.left.share <= MOSTLY * lacked else "not in the library"
 
 
 def _step(found: Fit, batches: Sequence[Batch], held_out: Sequence[Batch], diagnosis: Diagnosis) -> Step:
     outside = relative_error(found.model, held_out) if held_out else None
     return Step(found, relative_error(found.model, batches), outside, diagnosis)
-
-
-def _rises(new: float | None, old: float | None) -> bool:
-    return new is not None and old is not None and new > old

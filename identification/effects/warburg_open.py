@@ -17,7 +17,7 @@ class WarburgOpen(Relaxation):
     """
 
     kind: ClassVar[str] = "warburg_open"
-    title: ClassVar[str] = "diffusion, blocked end"
+    title: ClassVar[str] = "diffusion, open circuit (blocked end)"
     at_rest: ClassVar[float] = 0.0
 
     def impedance(self, s: ComplexArray) -> ComplexArray:

@@ -17,7 +17,7 @@ class WarburgShort(Relaxation):
     """
 
     kind: ClassVar[str] = "warburg_short"
-    title: ClassVar[str] = "diffusion, open end"
+    title: ClassVar[str] = "diffusion to an end held constant"
 
     def impedance(self, s: ComplexArray) -> ComplexArray:
         """tanh(√s)/√s."""

@@ -20,6 +20,10 @@ class LegendreDependence(Coefficient):
     coefficient: int = 0
     variable: int = 0
 
+    def __init_subclass__(cls, **more: object) -> None:
+        super().__init_subclass__(**more)
+        cls.points_needed = getattr(cls, "degree", 0) + 1
+
     def direction(self, setting: Setting) -> FloatArray:
         """One for the coefficient, zero for the others."""
         chosen = np.arange(setting.structure.n_plant) == self.coefficient

@@ -164,7 +164,8 @@ class Effect(ABC):
     `domain`: the kind of plant it belongs to; `unit` of e in words, `sign` +1 where only e ≥ 0 is physical, `largest`
     the largest physical |e| (None: no bound), `source` where it is described; `of_measurements`: it lies in how or when
     was measured, not in the plant; `oversampling` of the time grid on which a force is computed in continuous time;
-    `shapes` the number of amplitudes; `states` by how many it raises the order of the plant, infinite for distributed
+    `shapes` the number of amplitudes; `points_needed`: distinct values of each scheduling variable without which it
+    is a lower order under another name; `states` by how many it raises the order of the plant, infinite for distributed
     effects such as a delay or diffusion; `unseen` says why an experiment does not show it where its signature
     vanishes, `unjudged` why it was not looked for where it is not `judgeable`.
     """
@@ -180,6 +181,7 @@ class Effect(ABC):
     needs_records: ClassVar[bool] = False
     of_measurements: ClassVar[bool] = False
     shapes: ClassVar[int] = 1
+    points_needed: ClassVar[int] = 1
     oversampling: ClassVar[int] = 2
     states: ClassVar[float] = 0
     unjudged: ClassVar[str] = ""

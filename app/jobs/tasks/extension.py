@@ -66,7 +66,7 @@ def _grown(base: Fit, effect: Effect, request: ExtensionRequest) -> Fit:
     if not judged[0].signatures:
         raise MisuseError(f"{effect.title}: {judged[0].why_not}", "effects")
     scores = score_tests(base, judged, np.random.default_rng(request.seed))
-    refitted = refit_short_list(base, scores)
+    refitted = refit_short_list(base, scores).evidence
     if not refitted:
         raise MisuseError(
             f"{effect.title}: fitted to these experiments it explains nothing or leaves its physical range; it is not"

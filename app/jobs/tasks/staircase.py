@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from app import __version__
-from app.conversion.diagnoses import findings
+from app.conversion.diagnoses import VERDICTS, findings
 from app.conversion.effects import chosen_effects, extended_model
 from app.conversion.experiments import held_out_batches, kept_batches
 from app.conversion.extremes import require_finite, within_doubles
@@ -24,11 +24,6 @@ from identification.places.place import Effect
 
 KIND = "staircase"
 FIELDS = {"effects": "/effects", "model": "/experimentIds"}
-CONCLUSIONS = {
-    "nothing missing": "nothingMissing",
-    "explained": "explained",
-    "not in the library": "notInTheLibrary",
-}
 KEPT = ("name", "description", "seed", "experimentIds", "heldOutExperimentIds")
 
 
@@ -59,7 +54,7 @@ def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
         **{name: payload["request"][name] for name in KEPT},
         "softwareVersion": __version__,
         "modelId": first.id,
-        "conclusion": CONCLUSIONS[conclusion(steps)],
+        "conclusion": VERDICTS[conclusion(steps)],
         "steps": [
             _step(step, name, diagnosis.identifier, step.model.effects[-1].effect.kind if i else None).as_json()
             for i, (step, name, diagnosis) in enumerate(zip(steps, names, diagnoses, strict=True))

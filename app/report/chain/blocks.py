@@ -15,9 +15,10 @@ from app.schemas.diagnoses import Diagnosis
 RESIDUALS = "Residuals divided by their standard deviation: noise, and off the fitted data the model's own uncertainty."
 VERDICTS = {
     "nothingMissing": "Nothing is missing that these experiments could show.",
-    "explained": "The best effect leaves nothing but noise.",
+    "explained": "The best effect explains it.",
     "partlyExplained": "The best effect explains a part; something else is missing too.",
     "notInTheLibrary": "Something is missing, and no effect of the library has its shape.",
+    "cannotBeJudged": "These experiments cannot say whether something is missing.",
 }
 
 
@@ -33,10 +34,13 @@ def diagnosis_text(diagnosis: Diagnosis) -> str:
     """What was found, in words."""
     titles = {one.kind: one.title for one in diagnosis.ranking}
     names = ", ".join(titles.get(kind, kind) for kind in diagnosis.announced)
+    reason = f" {diagnosis.reason[0].upper()}{diagnosis.reason[1:]}." if diagnosis.reason else ""
     if not names:
-        return VERDICTS[diagnosis.verdict]
+        return VERDICTS[diagnosis.verdict] + reason
+    held = diagnosis.ranking[0].evidence is not None and diagnosis.ranking[0].evidence.at_bound
+    names += " (at the end of its physical range)" if held else ""
     share = percent(diagnosis.explained_share)
-    return f"Announced: {names}. {VERDICTS[diagnosis.verdict]} The best effect explains {share} of it."
+    return f"Announced: {names}. {VERDICTS[diagnosis.verdict]} The best effect explains {share} of it.{reason}"
 
 
 def diagnosis_blocks(diagnosis: Diagnosis, labels: Mapping[str, str], axes: Axes) -> list[Plot | Table]:

@@ -1,6 +1,7 @@
 """Right effects first, those alike in one set, nothing invented, everything else called unknown."""
 
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -82,8 +83,10 @@ def test_coulomb_friction_without_its_kind_is_not_called_hysteresis():
     data = with_force(lambda x, v: 0.6 * np.tanh(v / 0.002))
     assert kinds(diagnose(MODEL, data, (CoulombFriction(), Hysteresis())).announced) == ["coulomb_friction"]
     found = diagnose(MODEL, data, (Hysteresis(),))
-    assert found.announced == ()
-    assert found.verdict == "not in the library"
+    assert found.best.at_bound
+    assert found.verdict == "partly explained"
+    assert not found.confident
+    assert staircase(MODEL, data, effects=(Hysteresis(),))[-1].model.effects == ()
 
 
 def test_lack_of_fit_has_what_the_fitted_parameters_leave():
@@ -97,7 +100,7 @@ def test_an_effect_that_explains_no_more_than_its_parameter_costs_is_not_announc
     data = batches(0)
     found = diagnose(MODEL, data, (QuadraticSensor(), Delay()))
     base = fit(MODEL, Rows(data))
-    evidence = refit_short_list(base, found.scores)
+    evidence = refit_short_list(base, found.scores).evidence
     assert all(one.bic > base.cost for one in evidence)
     assert all(one.explained < 6 for one in evidence)
 
@@ -190,7 +193,8 @@ def test_two_effects_are_found_one_after_the_other():
     steps = staircase(MODEL, spoilt(9), spoilt(10))
     assert {one.effect.kind for one in steps[-1].model.effects} == {"delay", "quadratic_sensor"}
     errors = [step.held_out_error for step in steps]
-    assert errors == sorted(errors, reverse=True)
+    assert errors[-1] < 0.02 * errors[0]
+    assert all(later < 1.01 * earlier for earlier, later in pairwise(errors))
     assert conclusion(steps) == "explained"
     assert steps[-1].diagnosis.lack_of_fit.p_value > 1e-3
 

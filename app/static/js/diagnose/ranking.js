@@ -10,7 +10,7 @@ import { tableBehind } from "../tables.js";
 export function drawRanking(place, diagnosis, { plant, add }) {
   const refitted = diagnosis.ranking.filter((one) => one.evidence);
   replace(place,
-    refitted.length ? h("p", { class: "hint" }, "Each was fitted together with the parameters of the model. The weight says how the evidence divides among them and the model as it is.") : h("p", {}, "No effect stands out."),
+    refitted.length ? h("p", { class: "hint" }, "Each was fitted together with the parameters of the model. The weight says how the evidence divides among them and none of these.") : h("p", {}, "No effect stands out."),
     refitted.length ? [h("ol", { class: "effects" }, refitted.map((one) => entry(one, { plant, add }))), untilNoise(add), add.panel] : null,
     tableBehind(() => ({ columns: ["effect", "acts on", "score", "p-value", "adjusted p-value"], textColumns: 2,
       rows: diagnosis.ranking.map((one) => [nameOf(one), one.place, significant(one.score), probability(one.pValue), probability(one.adjustedPValue)]) }), `All ${diagnosis.ranking.length} effects that were judged`));
@@ -19,10 +19,11 @@ export function drawRanking(place, diagnosis, { plant, add }) {
 function entry(one, { plant, add }) {
   const { evidence } = one;
   const button = h("button", { type: "button", class: one.announced ? "" : "quiet", "data-effect": one.kind, "aria-label": `Add this effect: ${nameOf(one)}`, onclick: (event) => add.start(one, event.target) }, "Add this effect");
+  const held = evidence.atBound ? h("p", { class: "hint" }, "At the end of its physical range: no estimate, and no interval.") : null;
   const stopped = evidence.outcome.status === "converged" ? null : h("p", { class: "hint" }, evidence.outcome.advice || evidence.outcome.status.replaceAll("_", " "));
   return h("li", {},
     h("div", {}, h("h3", {}, nameOf(one), one.announced ? h("span", { class: "tag" }, "announced") : null), h("p", { class: "hint" }, `acts on: ${one.place}`)),
-    h("div", {}, h("p", {}, effectText(evidence.effect, plant)), stopped),
+    h("div", {}, h("p", {}, effectText(evidence.effect, plant)), held, stopped),
     h("div", {}, weightBar(evidence.weight), h("p", { class: "hint" }, `χ² explained per parameter: ${significant(evidence.chiSquarePerParameter)}; adjusted p-value: ${probability(one.adjustedPValue)}`)),
     button);
 }
