@@ -49,7 +49,8 @@ def placed_effect(document: PlacedEffectDocument) -> PlacedEffect:
     assert effect is not None, "kept models carry effects of the library"
     hints = typing.get_type_hints(type(effect))
     values: dict[str, float | str] = {
-        one.name: round(one.value) if hints[one.name] is int else one.value for one in document.parameters
+        one.name: hints[one.name](round(one.value)) if hints[one.name] in (int, bool) else one.value
+        for one in document.parameters
     }
     if document.quantity is not None:
         values["quantity"] = document.quantity

@@ -28,7 +28,9 @@ class EffectParameterEntry(CamelModel):
     """A parameter of an effect besides its amplitude."""
 
     name: str
-    quantity: Literal["frequency", "time", "input", "output", "velocity", "number"] = Field(description="what it is")
+    quantity: Literal["frequency", "time", "input", "output", "displacement", "flow", "number"] = Field(
+        description="what it is"
+    )
     fitted: bool = Field(description="adjusted together with the amplitude; else only searched")
 
 

@@ -7,6 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from identification.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from identification.channels import UNSTATED, Channels
 from identification.comparison.disturbance import Disturbance
 from identification.signals import HeldInput
 
@@ -32,6 +33,7 @@ class Batch:
     record, taken off the outputs; `smoothed`: whether the responses stand for records
     that do not repeat; `notes`: what else is to be said of measurements, by their place in the list.
     `held`: how models in continuous time see the input, None where it is band limited; `hold_stated`: that was said.
+    `channels`: what input and output are.
     """
 
     points: FloatArray
@@ -55,6 +57,7 @@ class Batch:
     logged: Mapping[str, FloatArray] = field(default_factory=dict)
     held: HeldInput | None = None
     hold_stated: bool = False
+    channels: Channels = UNSTATED
 
     @cached_property
     def real(self) -> BoolArray:

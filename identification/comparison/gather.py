@@ -68,6 +68,8 @@ def _grid(part: Batch) -> object:
         part.held,
         part.hold_stated,
         part.smoothed,
+        part.channels.input.quantity,
+        part.channels.output.quantity,
     )
     return (*kind, part.omega.tobytes())
 
@@ -97,6 +99,7 @@ def _joined(group: list[Batch]) -> Batch:
         disturbances=tuple(one for part in group for one in part.disturbances),
         notes=tuple(one for part in group for one in part.notes),
         logged={name: np.concatenate([part.logged[name] for part in group]) for name in first.logged},
+        channels=first.channels,
         **stacked,
     )
 
@@ -139,6 +142,7 @@ def _of_response(m: int, data: FrequencyResponse) -> Batch:
         scaled=known,
         held=data.held,
         hold_stated=True,
+        channels=data.channels,
     )
 
 
@@ -177,6 +181,7 @@ def _of_periodic(m: int, record: TimeRecord, mean_value: bool) -> Batch:
         ends=noise.ends[None],
         between=(between_harmonics(record, count),),
         disturbances=(disturbances,),
+        channels=record.channels,
         notes=_notes(m, noise, step if rounding > ROUNDS * float(np.median(noise.variance)) * period else 0.0),
     )
 

@@ -74,7 +74,7 @@ def _errors(found: Fit, folds: Sequence[Sequence[BoolArray]]) -> tuple[float, fl
         model = fit(found.model, rows, iterations=ITERATIONS, tolerance=0.1, start=found.flows).model
         for (batch, left_out), scale, flow in zip(pairs, found.rows.scales, found.flows, strict=True):
             used = left_out & np.isfinite(batch.variances)
-            off = np.where(used, batch.outputs - model.respond(batch, flow.core).output, 0.0)
+            off = np.where(used, batch.outputs - model.respond(batch, flow).output, 0.0)
             whitened += float(np.sum(np.where(used, abs(off * batch.weights / scale) ** 2, 0.0)))
             plain += float(np.sum(abs(off[_used(batch)]) ** 2))
     return whitened, float(np.sqrt(plain))

@@ -1,6 +1,6 @@
 """What every effect would change, whitened, and cleared of what the fitted parameters can do."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,6 +10,7 @@ from identification.comparison.noise import noise_freedom, variance_of_projectio
 from identification.effects.misplaced_point import MisplacedPoint
 from identification.extension.fit import Fit
 from identification.extension.rows import effect_tangents
+from identification.places.nonlinear import Feedback
 from identification.places.place import Effect
 from identification.places.placed import PlacedEffect, placed
 from identification.whiteness import orthonormal
@@ -19,6 +20,8 @@ RECORDS = "it acts on signals, which only records of at least two periods show; 
 TWICE = "the model has it already; several would only imitate a curve that is not in the library"
 SHAPED = "the model has a curve of fitted shape in this place already, and two of them can imitate a third"
 FEW_POINTS = "it needs {} operating points, and there are {}: with fewer a lower order fits them as well"
+NOTHING = "nothing in this experiment to look at"
+ALIKE = "the same as another effect of the library as long as it is not stated what the output is"
 LOGGED = "no quantity was logged for every one of these experiments"
 
 
@@ -67,11 +70,20 @@ def candidates(fit: Fit, effects: Sequence[Effect], degree: int = 0) -> tuple[Ca
 
     Effects on signals and misplaced points enter a model once, and only one whose shape is fitted at each place.
     """
-    space = tangent_space(fit)
-    return tuple(_candidate(fit, effect, degree, space) for effect in effects)
+    space, first = tangent_space(fit), _first_readings(effects, fit)
+    return tuple(_candidate(fit, effect, degree, space, first) for effect in effects)
 
 
-def _candidate(fit: Fit, effect: Effect, degree: int, space: FloatArray) -> Candidate:
+def _first_readings(effects: Sequence[Effect], fit: Fit) -> dict[tuple[str, int, bool], Feedback]:
+    """Of forces that the signals cannot tell apart, as y may be a position or a speed, the one of lowest order."""
+    forces = [effect for effect in effects if isinstance(effect, Feedback) and fit.flows]
+    every = [one for effect in forces for one in effect.seen_by(fit.flows[0].batch)]
+    return {one.seen_as: one for one in sorted(every, key=lambda one: -one.order)}
+
+
+def _candidate(
+    fit: Fit, effect: Effect, degree: int, space: FloatArray, first: Mapping[tuple[str, int, bool], Feedback]
+) -> Candidate:
     if not all(effect.judgeable(flow) for flow in fit.flows):
         return Candidate(
             effect, (), why_not=effect.unjudged or (RECORDS if effect.needs_records else LOGGED), judged=False
@@ -83,9 +95,10 @@ def _candidate(fit: Fit, effect: Effect, degree: int, space: FloatArray) -> Cand
     if taken:
         return Candidate(effect, (), why_not=taken, judged=False)
     variables = fit.flows[0].setting.points.shape[1]
-    variants = [placed(one, degree, variables) for one in _variants(fit, effect)]
+    offered = _variants(fit, effect)
+    variants = [placed(one, degree, variables) for one in offered if _is_first(one, first)]
     if not variants:
-        return Candidate(effect, (), why_not="nothing in this experiment to look at")
+        return Candidate(effect, (), why_not=ALIKE if offered else NOTHING)
     changes = _changes(fit, variants)
     projected = changes - (changes @ space.T) @ space
     count = len(changes) // len(variants)
@@ -100,6 +113,10 @@ def _distinct_points(fit: Fit) -> int:
     """How many values the scheduling variable with most of them takes."""
     points = np.concatenate([flow.setting.points for flow in fit.flows])
     return max((len(np.unique(column)) for column in points.T), default=1)
+
+
+def _is_first(one: Effect, first: Mapping[tuple[str, int, bool], Feedback]) -> bool:
+    return not isinstance(one, Feedback) or type(first[one.seen_as]) is type(one)
 
 
 def _taken(effect: Effect, there: Sequence[Effect]) -> str:

@@ -13,7 +13,7 @@ from identification.diagnosis.verdict import Verdict
 from identification.extension.fit import Fit, fit
 from identification.models.model import Model
 from identification.places.place import Effect
-from identification.places.simulate import NoSteadyStateError
+from identification.places.steady import NoSteadyStateError
 
 LARGEST = 4
 MOSTLY = 0.25

@@ -16,6 +16,8 @@ class CubicDamping(Feedback):
     domain: ClassVar[str] = "mechanical"
     unit: ClassVar[str] = "input unit per (output unit/s)³"
     source: ClassVar[str] = "[Nayfeh1979, Section 3.3]"
+    on_displacement: ClassVar[bool] = False
+    curve: ClassVar[str] = "cube"
 
     def force(self, x: FloatArray, velocity: FloatArray) -> FloatArray:
         """ẋ³."""

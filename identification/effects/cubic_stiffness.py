@@ -16,6 +16,7 @@ class CubicStiffness(Feedback):
     domain: ClassVar[str] = "mechanical"
     unit: ClassVar[str] = "input unit per output unit³"
     source: ClassVar[str] = "[Nayfeh1979, Section 2.3]"
+    curve: ClassVar[str] = "cube"
 
     def force(self, x: FloatArray, velocity: FloatArray) -> FloatArray:
         """x³."""

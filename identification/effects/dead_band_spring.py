@@ -21,7 +21,9 @@ class DeadBandSpring(Feedback):
     source: ClassVar[str] = "[Nayfeh1979, Section 3.3]"
     oversampling: ClassVar[int] = 4
     sign: ClassVar[int] = 1
-    parameters: ClassVar[tuple[FurtherParameter, ...]] = (FurtherParameter("gap", "output", (0.3, 0.45, 0.6, 0.75)),)
+    parameters: ClassVar[tuple[FurtherParameter, ...]] = (
+        FurtherParameter("gap", "displacement", (0.3, 0.45, 0.6, 0.75)),
+    )
 
     gap: float = 1.0
 

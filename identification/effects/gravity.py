@@ -24,7 +24,7 @@ class Gravity(Feedback):
     unit: ClassVar[str] = "input unit"
     source: ClassVar[str] = "[Nayfeh1979, Section 2.1]"
     parameters: ClassVar[tuple[FurtherParameter, ...]] = (
-        FurtherParameter("period", "output", (0.5, 0.8, 1.2, 2.0, 3.5), highest=6.0),
+        FurtherParameter("period", "displacement", (0.5, 0.8, 1.2, 2.0, 3.5), highest=6.0),
     )
 
     period: float = 6.283185307179586

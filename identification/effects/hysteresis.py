@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
+import numpy as np
+
 from identification.arrays import FloatArray
 from identification.places.memory import dahl
 from identification.places.nonlinear import Feedback
@@ -25,7 +27,7 @@ class Hysteresis(Feedback):
     oversampling: ClassVar[int] = 8
     sign: ClassVar[int] = 1
     parameters: ClassVar[tuple[FurtherParameter, ...]] = (
-        FurtherParameter("travel", "output", (0.05, 0.15, 0.4, 1.0), lowest=0.02),
+        FurtherParameter("travel", "displacement", (0.05, 0.15, 0.4, 1.0), lowest=0.02),
     )
 
     travel: float = 1.0
@@ -33,3 +35,7 @@ class Hysteresis(Feedback):
     def force(self, x: FloatArray, velocity: FloatArray) -> FloatArray:
         """z."""
         return dahl(x, self.travel)
+
+    def slopes(self, x: FloatArray, velocity: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """None that belong to a moment: the state remembers."""
+        return np.zeros_like(x), np.zeros_like(x)

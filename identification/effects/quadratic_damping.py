@@ -16,6 +16,7 @@ class QuadraticDamping(Feedback):
     domain: ClassVar[str] = "mechanical"
     unit: ClassVar[str] = "input unit per (output unit/s)²"
     source: ClassVar[str] = "[Nayfeh1979, Section 3.3]"
+    on_displacement: ClassVar[bool] = False
 
     def force(self, x: FloatArray, velocity: FloatArray) -> FloatArray:
         """|ẋ| ẋ."""

@@ -10,7 +10,7 @@ from identification.extension.rows import Rows, effect_tangents, plant_tangents
 from identification.models.model import Model
 from identification.outcome import Outcome
 from identification.places.place import Flow
-from identification.places.simulate import NoSteadyStateError
+from identification.places.steady import NoSteadyStateError
 
 HALVINGS = 6
 POLISHING, POLISHED = 4, 1e-3
@@ -62,7 +62,7 @@ def fit(
     current, promised = _at(model, rows, start), np.inf
     outcome = Outcome("not_converged", "the fit stopped before its minimum; start nearer or fit fewer effects", 0)
     for i in range(iterations):
-        step, promised = _step(current.tangents, current.residual)
+        step, promised = gauss_newton_step(current.tangents, current.residual)
         if promised < tolerance:
             outcome = Outcome("converged", "", i)
             break
@@ -85,13 +85,13 @@ def _energy(found: Fit) -> float:
 
 
 def _at(model: Model, rows: Rows, before: Sequence[Flow] | None) -> Fit:
-    starts = [None] * len(rows.batches) if before is None else [flow.core for flow in before]
+    starts = [None] * len(rows.batches) if before is None else before
     flows = tuple(model.respond(batch, start) for batch, start in zip(rows.batches, starts, strict=True))
     tangents = [plant_tangents(model, rows, flows), *(effect_tangents(one, rows, flows) for one in model.effects)]
     return Fit(model, rows.residual(flows), np.concatenate(tangents), flows, rows, Outcome("converged"))
 
 
-def _step(tangents: FloatArray, residual: FloatArray) -> tuple[FloatArray, float]:
+def gauss_newton_step(tangents: FloatArray, residual: FloatArray) -> tuple[FloatArray, float]:
     """The Gauss–Newton step and the decrease of ‖r‖² that it promises."""
     size = np.linalg.norm(tangents, axis=1)
     size = np.where(size > 0, size, 1.0)
@@ -107,7 +107,7 @@ def _descend(current: Fit, step: FloatArray) -> Fit | None:
     before = float(current.residual @ current.residual)
     scaled = 1.0
     for _ in range(HALVINGS):
-        trial = _moved(current, scaled * step)
+        trial = moved(current, scaled * step)
         try:
             found = _at(trial, current.rows, current.flows)
         except NoSteadyStateError:
@@ -119,7 +119,7 @@ def _descend(current: Fit, step: FloatArray) -> Fit | None:
     return None
 
 
-def _moved(current: Fit, step: FloatArray) -> Model:
+def moved(current: Fit, step: FloatArray) -> Model:
     """The model after a step; further parameters are multiplied, all keep to their physical range."""
     model = current.model
     plant = model.plant_size
@@ -129,8 +129,8 @@ def _moved(current: Fit, step: FloatArray) -> Model:
     for one in model.effects:
         end = start + one.size
         further = slice(end, start + len(one.parameters()))
-        moved = old[further] * np.exp(np.clip(step[further], -0.7, 0.7))
-        values[further] = np.clip(moved, *one.effect.limits(current.flows[0]))
+        grown = old[further] * np.exp(np.clip(step[further], -0.7, 0.7))
+        values[further] = np.clip(grown, *one.effect.limits(current.flows[0]))
         if one.degree == 0 and one.effect.sign:
             values[start:end] = np.maximum(one.effect.sign * values[start:end], 0.0) * one.effect.sign
         start = further.stop
@@ -140,7 +140,7 @@ def _moved(current: Fit, step: FloatArray) -> Model:
 def _polished(current: Fit) -> Fit:
     for _ in range(POLISHING):
         current = replace(current, tangents=differences(current))
-        step, promised = _step(current.tangents, current.residual)
+        step, promised = gauss_newton_step(current.tangents, current.residual)
         better = _descend(current, step) if promised > POLISHED else None
         if better is None:
             return current
@@ -159,9 +159,9 @@ def _difference(current: Fit, i: int, tangent: FloatArray) -> FloatArray:
     for size in (0.1 / length, -0.1 / length) if length > 0 else ():
         step = np.zeros(len(current.tangents))
         step[i] = size
-        moved = _free_move(current.model, step)
+        changed = _free_move(current.model, step)
         try:
-            change = [moved.respond(flow.batch, flow.core).output - flow.output for flow in current.flows]
+            change = [changed.respond(flow.batch, flow).output - flow.output for flow in current.flows]
         except NoSteadyStateError:
             continue
         return current.rows.whiten(change) / size

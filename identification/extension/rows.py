@@ -85,18 +85,22 @@ def _by_amplitudes(effect: Effect, one: PlacedEffect, flow: Flow) -> ComplexArra
 
 def _by_further(one: PlacedEffect, name: str, flows: Sequence[Flow]) -> list[ComplexArray]:
     """∂Ŷ/∂ ln η, (1, M, K) a batch: Σ c_ij ∂t_ij/∂ ln η where effects are linear in e, all but those that reshape."""
-    names = one.effect.fitted_names()
-    values = one.effect.values()
-    changed = []
-    for sign in (1, -1):
-        moved = np.where(np.array(names) == name, values * np.exp(sign * FURTHER_STEP), values)
-        effect = one.effect.with_values(moved)
-        if isinstance(effect, Reshaped):
-            placed = replace(one, effect=effect)
-            changed.append([effect.seen(placed.amplitude(flow.setting, flow.batch), flow)[None] for flow in flows])
-        else:
-            changed.append([_by_amplitudes(effect, one, flow) for flow in flows])
-    weights = np.ones(1) if isinstance(one.effect, Reshaped) else one.coefficients.ravel()
-    return [
-        np.tensordot(weights, (up - down) / (2 * FURTHER_STEP), axes=1)[None] for up, down in zip(*changed, strict=True)
+    names, values = one.effect.fitted_names(), one.effect.values()
+    ends = [
+        one.effect.with_values(np.where(np.array(names) == name, values * np.exp(side * FURTHER_STEP), values))
+        for side in (1, -1)
     ]
+    return [
+        _between(replace(one, effect=ends[0]), replace(one, effect=ends[1]), flow) / (2 * FURTHER_STEP)
+        for flow in flows
+    ]
+
+
+def _between(up: PlacedEffect, down: PlacedEffect, flow: Flow) -> ComplexArray:
+    """The change of Y (1, M, K) from one value of a further parameter to another."""
+    if isinstance(up.effect, Reshaped) and isinstance(down.effect, Reshaped):
+        first = up.effect.seen(up.amplitude(flow.setting, flow.batch), flow)
+        last = down.effect.seen(down.amplitude(flow.setting, flow.batch), flow)
+        return flow.through(first - last)[None]
+    change = _by_amplitudes(up.effect, up, flow) - _by_amplitudes(down.effect, down, flow)
+    return np.tensordot(up.coefficients.ravel(), change, axes=1)[None]

@@ -14,16 +14,14 @@ from identification.errors import MisuseError, RangeError, ShapeError
 from identification.extension.response import with_only
 from identification.models.model import Model, require_matching
 from identification.places.linear import Factor, Parallel
-from identification.places.newton import newton
-from identification.places.nonlinear import Added, Feedback
+from identification.places.nonlinear import Added
 from identification.places.place import Effect, Flow
 from identification.places.placed import PlacedEffect
-from identification.places.simulate import NoSteadyStateError
+from identification.places.steady import NoSteadyStateError
 from identification.signals import HeldInput, Hold
 
 FINER = 4
 STEP = 0.1
-SMALLEST_SHARE = 1 / 16
 ROUNDING, NEGLIGIBLE = 1e-14, 1e-9
 OF_MEASUREMENTS = "it belongs to single measurements, not to the plant"
 OF_PERIOD = "it is a disturbance in step with the period in which it was found, not an answer to the input"
@@ -162,7 +160,7 @@ def _settled(model: Model, batch: Batch, point: FloatArray) -> Flow:
     where = f"at the operating point ({', '.join(f'{value:g}' for value in point)})"
     try:
         with np.errstate(all="ignore"):
-            flow = _grown(model, batch)
+            flow = model.respond(batch)
     except NoSteadyStateError as error:
         raise NoSteadyStateError(
             f"{where} no steady state was found: the effects are too strong for this input; play it at a lower level",
@@ -178,30 +176,6 @@ def _settled(model: Model, batch: Batch, point: FloatArray) -> Flow:
     if not np.all(np.isfinite(flow.output)):
         raise RangeError(f"{where} the output leaves the range of numbers; choose other units", "input")
     return flow
-
-
-def _grown(model: Model, batch: Batch) -> Flow:
-    """The response; where the forces of effects are too strong at once, they grow from a part to the whole."""
-    share, step, core = 0.0, 1.0, None
-    while True:
-        try:
-            flow = _with_forces(model, share + step).respond(batch, core, newton)
-        except NoSteadyStateError:
-            step /= 4
-            if step < SMALLEST_SHARE:
-                raise
-            continue
-        share, core = share + step, flow.core
-        if share >= 1:
-            return flow
-
-
-def _with_forces(model: Model, share: float) -> Model:
-    effects = [
-        replace(one, coefficients=share * one.coefficients) if isinstance(one.effect, Feedback) else one
-        for one in model.effects
-    ]
-    return replace(model, effects=tuple(effects))
 
 
 def _require_mean_known(model: Model, flow: Flow, where: str) -> None:
@@ -241,9 +215,7 @@ def _deviation(model: Model, batch: Batch, flow: Flow, count: int) -> FloatArray
         size = STEP / max(1.0, float(abs(direction * relative).max()))
         try:
             up, down = (
-                model.with_parameters(model.parameters + sign * size * direction)
-                .respond(batch, flow.core, newton)
-                .output
+                model.with_parameters(model.parameters + sign * size * direction).respond(batch, flow).output
                 for sign in (1, -1)
             )
         except NoSteadyStateError:

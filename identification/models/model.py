@@ -14,7 +14,7 @@ from identification.models.physical import RationalForm
 from identification.models.structure import Structure
 from identification.places.place import Flow, Setting
 from identification.places.placed import PlacedEffect
-from identification.places.simulate import Solver, simulate
+from identification.places.simulate import Acting, followed, simulate
 from identification.scheduling import ParameterDependence
 from identification.signals import OperatingPoint
 
@@ -158,11 +158,18 @@ class Model:
         slope = np.moveaxis(slopes, 0, -1)[:, : self.structure.n_plant]
         return Setting(self.structure, zeta, (p - low) / half - 1, slope)
 
-    def respond(self, batch: Batch, start: ComplexArray | None = None, solve: Solver | None = None) -> Flow:
+    def respond(self, batch: Batch, start: Flow | None = None) -> Flow:
         """The steady signals of a batch; see `identification.places.simulate`."""
         setting = self.setting(batch.points)
-        acting = [(one.effect, one.amplitude(setting, batch)) for one in self.effects]
-        return simulate(setting, acting, batch, start, solve)
+        return simulate(setting, self._acting(setting, batch), batch, start)
+
+    def follow(self, batch: Batch, measured: ComplexArray) -> Flow:
+        """The signals of a batch with the motion taken from the measured output (M, K)."""
+        setting = self.setting(batch.points)
+        return followed(setting, self._acting(setting, batch), batch, measured)
+
+    def _acting(self, setting: Setting, batch: Batch) -> list[Acting]:
+        return [(one.effect, one.amplitude(setting, batch)) for one in self.effects]
 
     def output(self, batch: Batch) -> ComplexArray:
         """The lines of the output, (M, K)."""

@@ -156,6 +156,14 @@ class PhysicalForm(Structure):
         free = np.arange(self._count + 1) != self._fixed
         return known * a[self._fixed], a[free], known * b[self._fixed], b[free]
 
+    def characteristic(self, zeta: FloatArray, omega: FloatArray) -> ComplexArray:
+        """A (…, 1 + m, F) and its derivatives by the m free ones of its coefficients, which come first."""
+        known, by_zeta, _, _ = self.affine(omega)
+        free = sum(one.fixed is None for one in self.denominator)
+        value = known + zeta[..., : self._count] @ by_zeta
+        slopes = np.broadcast_to(by_zeta[:free], (*value.shape[:-1], free, len(omega)))
+        return np.concatenate([value[..., None, :], slopes], axis=-2)
+
     def response(self, zeta: FloatArray, omega: FloatArray) -> ComplexArray:
         """That of one input and output, as (…, F, 1, 1)."""
         return self.plant_response(zeta, omega)[..., None, None]

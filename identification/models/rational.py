@@ -186,6 +186,12 @@ class RationalStructure(Structure):
         a, _, _, c, d = self.split(zeta)
         return np.asarray(np.max([abs(roots(x)).max(axis=-1, initial=0.0) for x in (a, c, d)], axis=0))
 
+    def characteristic(self, zeta: FloatArray, omega: FloatArray) -> ComplexArray:
+        """A (…, 1 + n_a, F) and its derivatives by a_1 …."""
+        a, powers = self.split(zeta)[0], self.powers(omega)[1]
+        by_a = np.broadcast_to(powers[1:], (*a.shape[:-1], *powers[1:].shape))
+        return np.concatenate([_monic(a, powers)[..., None, :], by_a], axis=-2)
+
     def powers(self, omega: FloatArray) -> tuple[ComplexArray, ComplexArray]:
         """The powers that B and A are sums of, lowest coefficient first, (n_b + 1, F) and (n_a + 1, F)."""
         numerator, denominator = np.arange(self.n_b + 1)[:, None], np.arange(self.n_a + 1)[:, None]

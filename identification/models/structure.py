@@ -145,6 +145,13 @@ class Structure(ABC):
         if held is not None and not self.is_discrete:
             raise MisuseError("this structure in continuous time is not seen through a held input", "structure")
 
+    def characteristic(self, zeta: FloatArray, omega: FloatArray) -> ComplexArray:
+        """A (…, 1 + m, F) for ζ (…, n): the denominator of G, then its derivatives by the first m coefficients.
+
+        The others are not in it; 1 without derivatives where G has no such form.
+        """
+        return np.ones((*zeta.shape[:-1], 1, len(omega)), dtype=np.complex128)
+
     def noise_response(self, zeta: FloatArray, omega: FloatArray) -> ComplexArray:
         """H(ω; ζ) for ζ (…, n) and ω (F,), as (…, F); one unless overridden."""
         return np.ones((*zeta.shape[:-1], len(omega)), dtype=np.complex128)

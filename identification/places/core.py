@@ -35,16 +35,16 @@ class Reshaped(Effect):
     def tangent(self, e: FloatArray, flow: Flow) -> ComplexArray:
         """∂Y/∂e (1, M, K), from central differences of Ĝ."""
         step = self.small(flow)
-        return np.asarray(((self.seen(e + step, flow) - self.seen(e - step, flow)) / (2 * step))[None])
+        return flow.through((self.seen(e + step, flow) - self.seen(e - step, flow)) / (2 * step))[None]
 
     def seen(self, e: FloatArray, flow: Flow) -> ComplexArray:
-        """What leaves the path (M, K) at the amplitude e (1, M), the forces in the loop as they are."""
+        """What leaves the core (M, K) at the amplitude e (1, M), the forces in the loop as they are."""
         acting = [*(one for one in flow.acting if one[0].kind != self.kind), (self, e)]
         forces = flow.entering - flow.drive
         core = core_response(flow.setting, acting, flow.batch.omega, flow.held, True) * flow.entering
         if np.any(forces):
             core = core - core_response(flow.setting, acting, flow.batch.omega) * forces
-        return np.asarray(core * flow.factor)
+        return np.asarray(core)
 
 
 def core_response(

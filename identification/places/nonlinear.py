@@ -1,14 +1,17 @@
 """Effects that act on signals: at the actuator, in feedback around the plant, at the sensor, added to the output."""
 
 from abc import abstractmethod
-from dataclasses import dataclass
-from typing import ClassVar
+from dataclasses import dataclass, replace
+from typing import ClassVar, Self
 
 import numpy as np
 
 from identification.arrays import ComplexArray, FloatArray
 from identification.comparison.batch import Batch
-from identification.places.place import Effect, Flow
+from identification.places.motion import motions, powers
+from identification.places.place import Effect, Flow, FurtherParameter
+
+SLOPE_STEP = 1e-4
 
 
 @dataclass(frozen=True)
@@ -26,25 +29,76 @@ class Actuator(Effect):
         """∂Y/∂e (1, M, K)."""
         finer = 1 if flow.held else flow.finer(self)
         change = flow.batch.spectrum(self.shape(flow.input_signal(finer)))
-        return np.asarray((flow.entry * flow.factor * change)[None])
+        return flow.through(flow.entry * change)[None]
 
 
 @dataclass(frozen=True)
 class Feedback(Effect):
-    """A force fed back to the input: x = G (u − e f(x, ẋ))."""
+    """A force that depends on the displacement q and the flow q̇ of the plant, wherever the sensor sits.
+
+        x = G (u − e f(q, q̇)),   q = s^(−d) x,   d = `order` of the output: 0 displacement, 1 flow, 2 rate of the flow
+        x = G u + e f(q, q̇),   q = s^(−d) u,   where the motion is `driven`: the input is the motion, the output a force
+
+    `on_displacement`: the force depends on q, else on q̇; `differentiated`: f is a flux and the force is its rate.
+    `curve`: a name that effects share whose f is the same function, of the displacement in one and the flow in another.
+    """
 
     place: ClassVar[str] = "feedback from output or velocity"
     needs_records: ClassVar[bool] = True
+    on_displacement: ClassVar[bool] = True
+    differentiated: ClassVar[bool] = False
+    curve: ClassVar[str] = ""
+
+    order: int = 0
+    driven: bool = False
 
     @abstractmethod
     def force(self, x: FloatArray, velocity: FloatArray) -> FloatArray:
-        """f(x, ẋ) (M, L) over one period."""
+        """f(q, q̇) (M, L) over one period."""
+
+    def slopes(self, x: FloatArray, velocity: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """∂f/∂q and ∂f/∂q̇ (M, L) at each time, by central differences of the one that f depends on."""
+        by = x if self.on_displacement else velocity
+        step = SLOPE_STEP * np.sqrt(np.mean(by**2, axis=-1, keepdims=True)) + np.finfo(np.float64).tiny
+        up, down = (self.force(by + side * step, by + side * step) for side in (1, -1))
+        slope, none = np.asarray((up - down) / (2 * step)), np.zeros_like(by)
+        return (slope, none) if self.on_displacement else (none, slope)
+
+    def lines(self, batch: Batch, x: FloatArray, velocity: FloatArray) -> ComplexArray:
+        """F (M, K) of the force for q and q̇ (M, L) over one period."""
+        return np.asarray(self.rates(batch) * batch.spectrum(self.force(x, velocity)))
+
+    def rates(self, batch: Batch) -> ComplexArray:
+        """What turns lines of f into lines of the force, (K,)."""
+        return powers(batch, int(self.differentiated))
+
+    def seen_by(self, batch: Batch) -> list[Self]:
+        """The effect as it acts on the motion of these channels; of every order where quantities are not stated."""
+        return [replace(self, order=order, driven=driven) for order, driven in motions(batch.channels)]
+
+    @property
+    def seen_as(self) -> tuple[str, int, bool]:
+        """What the signals tell of the effect: the function and how often the carrier is differentiated before it."""
+        return self.curve or self.kind, int(not self.on_displacement) - self.order, self.driven
+
+    def variants(self, flow: Flow) -> list[Self]:
+        """The grid of further parameters for every motion that the signals may be."""
+        return [one for placed in self.seen_by(flow.batch) for one in placed.shaped(flow)]
+
+    def shaped(self, flow: Flow) -> list[Self]:
+        """The effect over the grid of its further parameters, its motion kept."""
+        return super().variants(flow)
+
+    def scaled(self, parameter: FurtherParameter, flow: Flow, relative: float) -> float:
+        """The absolute value of a further parameter; displacement and flow are those of its own motion."""
+        return flow.scale(parameter.quantity, relative, self.order, self.driven)
 
     def tangent(self, e: FloatArray, flow: Flow) -> ComplexArray:
-        """∂Y/∂e (1, M, K), the loop around f not closed a second time."""
-        finer = flow.finer(self)
-        change = flow.batch.spectrum(self.force(flow.core_signal(finer), flow.core_velocity(finer)))
-        return np.asarray((-flow.response * flow.factor * change)[None])
+        """∂Y/∂e (1, M, K)."""
+        change = self.lines(flow.batch, *flow.motion(self.order, self.driven, flow.finer(self)))
+        if self.driven:
+            return np.asarray((flow.factor * change)[None])
+        return flow.through(-flow.response * change)[None]
 
 
 @dataclass(frozen=True)

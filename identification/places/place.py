@@ -14,9 +14,10 @@ from identification.arrays import ComplexArray, FloatArray
 from identification.comparison.batch import Batch
 from identification.models.hold import hold_factor
 from identification.models.structure import Structure
+from identification.places.motion import displacement, flow_rate
 from identification.signals import HeldInput
 
-Quantity = Literal["frequency", "time", "input", "output", "velocity", "number"]
+Quantity = Literal["frequency", "time", "input", "output", "displacement", "flow", "number"]
 
 
 @dataclass(frozen=True)
@@ -24,10 +25,10 @@ class FurtherParameter:
     """A parameter of an effect besides its amplitude, found by a scan and then by the refit.
 
     `values` are relative to what the experiment offers: for a frequency 0 … 1 runs logarithmically from half the lowest
-    to twice the highest excited frequency, a time is its inverse; levels are relative to the largest input, output or
-    velocity; a number is absolute. `fitted`: False when only scanned. `lowest`, `highest`: the range of a number or
-    level, in the same measure; frequencies and times are kept where the excited band, widened fourfold to each side,
-    can show them.
+    to twice the highest excited frequency, a time is its inverse; levels are relative to the largest input, output,
+    displacement or flow; a number is absolute. `fitted`: False when only scanned. `lowest`, `highest`: the range of a
+    number or level, in the same measure; frequencies and times are kept where the excited band, widened fourfold to
+    each side, can show them.
     """
 
     name: str
@@ -62,7 +63,9 @@ class Flow:
     input is seen through its hold; `entering` (M, K) the input behind the actuator; `drive` U (M, K) what enters the
     core, forces fed back included; `core` X (M, K) what leaves it; `factored` (M, K) that and the modes beside it,
     times all factors; `linear` (M, K) after all that acts linearly; `output` (M, K). `acting`: the effects with their
-    amplitudes; `gradient`: of the core by ζ_G (M, n_plant, K), with True as the input is seen.
+    amplitudes; `gradient`: of the core by ζ_G (M, n_plant, K), with True as the input is seen. `mean` (M,) of the
+    displacement where the output does not show it; `closing` turns a change of X without the reaction of the forces
+    (M, K) into one with it.
     """
 
     batch: Batch
@@ -76,20 +79,25 @@ class Flow:
     linear: ComplexArray
     output: ComplexArray
     factor: ComplexArray
-    acting: "tuple[tuple[Effect, FloatArray], ...]" = ()
-    gradient: "Callable[[bool], ComplexArray] | None" = None
-    cache: dict[tuple[str, int], FloatArray] = field(default_factory=dict)
+    acting: "tuple[tuple[Effect, FloatArray], ...]"
+    gradient: Callable[[bool], ComplexArray]
+    mean: FloatArray
+    closing: Callable[[ComplexArray], ComplexArray] | None = None
+    cache: dict[tuple[str, int, int], FloatArray] = field(default_factory=dict)
 
     @cached_property
     def by_coefficients(self) -> ComplexArray:
         """∂`factored`/∂ζ_G (M, n_plant, K), ζ_G before effects divide it; that of modes beside the core left out."""
-        assert self.gradient is not None
-        gradient, drive = self.gradient(False), self.drive * self.factor
+        gradient = self.gradient(False)
         if self.entry is self.response:
-            found = gradient * drive[:, None, :]
+            changes = gradient * self.drive[:, None, :]
         else:
-            entering = self.entering * self.factor
-            found = self.gradient(True) * entering[:, None, :] + gradient * (drive - entering)[:, None, :]
+            seen = self.gradient(True) * self.entering[:, None, :]
+            changes = seen + gradient * (self.drive - self.entering)[:, None, :]
+        if self.closing is None:
+            found = changes * self.factor[:, None, :]
+        else:
+            found = np.stack([self.through(one) for one in np.moveaxis(changes, 1, 0)], axis=1)
         return np.asarray(found if self.setting.passed is None else found * self.setting.passed[:, :, None])
 
     @property
@@ -108,25 +116,28 @@ class Flow:
         assert self.batch.signals is not None
         return self.batch.signals
 
+    def through(self, change: ComplexArray) -> ComplexArray:
+        """A change of the core (M, K), with the reaction of the forces to it, as it leaves the path behind."""
+        return np.asarray((change if self.closing is None else self.closing(change)) * self.factor)
+
     def finer(self, effect: "Effect") -> int:
         """By how much the time grid of a force is finer than the samples; not at all in discrete time."""
         return 1 if self.setting.structure.is_discrete else effect.oversampling
 
-    def core_signal(self, finer: int = 1) -> FloatArray:
-        """What leaves the core, (M, L·finer)."""
-        return self._kept(("x", finer), self.core, finer)
-
-    def core_velocity(self, finer: int = 1) -> FloatArray:
-        """Its rate of change per second, (M, L·finer)."""
-        return self._kept(("v", finer), derivative(self.core, self.batch), finer)
+    def motion(self, order: int, driven: bool, finer: int) -> tuple[FloatArray, FloatArray]:
+        """Displacement and flow (M, L·finer): from the output of this order, or from the input where that is driven."""
+        carrier, mean = (self.batch.inputs, np.zeros(len(self.mean))) if driven else (self.core, self.mean)
+        name = "input" if driven else "core"
+        q = self._kept((f"q of {name}", order, finer), lambda: displacement(carrier, mean, self.batch, order))
+        return q, self._kept((f"flow of {name}", order, finer), lambda: flow_rate(carrier, self.batch, order))
 
     def input_signal(self, finer: int = 1) -> FloatArray:
         """The input over one period, (M, L·finer)."""
-        return self._kept(("u", finer), self.batch.inputs, finer)
+        return self._kept(("u", 0, finer), lambda: self.batch.inputs)
 
-    def _kept(self, name: tuple[str, int], spectra: ComplexArray, finer: int) -> FloatArray:
+    def _kept(self, name: tuple[str, int, int], lines: Callable[[], ComplexArray]) -> FloatArray:
         if name not in self.cache:
-            self.cache[name] = self.batch.signal(spectra, finer)
+            self.cache[name] = self.batch.signal(lines(), name[-1])
         return self.cache[name]
 
     @cached_property
@@ -134,7 +145,7 @@ class Flow:
         """What reaches the sensor, (M, L)."""
         return self.batch.signal(self.linear)
 
-    def scale(self, quantity: Quantity, relative: float) -> float:
+    def scale(self, quantity: Quantity, relative: float, order: int = 0, driven: bool = False) -> float:
         """The absolute value of a further parameter whose relative value is given."""
         if quantity in ("frequency", "time"):
             low, high = self.batch.band
@@ -142,19 +153,16 @@ class Flow:
             return float(frequency if quantity == "frequency" else 1 / frequency)
         if quantity == "number" or self.batch.signals is None:
             return relative
-        signal = {"input": self.signals, "output": self.linear_signal, "velocity": self.core_velocity()}[quantity]
+        if quantity in ("displacement", "flow"):
+            signal = self.motion(order, driven, 1)[quantity == "flow"]
+        else:
+            signal = self.signals if quantity == "input" else self.linear_signal
         return float(relative * abs(signal).max())
 
 
 def passing(drive: ComplexArray, entering: ComplexArray, omega: FloatArray, held: HeldInput | None) -> ComplexArray:
     """What enters paths beside the core (M, K): the drive, its input as smooth as the hold makes it."""
     return drive if held is None else np.asarray(drive + entering * (hold_factor(omega, held) - 1))
-
-
-def derivative(spectra: ComplexArray, batch: Batch) -> ComplexArray:
-    """Lines of the time derivative; the Nyquist line, whose phase is not known, is left out."""
-    omega = np.where(batch.real, 0.0, batch.omega)
-    return np.asarray(1j * omega * spectra)
 
 
 @dataclass(frozen=True)
@@ -208,12 +216,16 @@ class Effect(ABC):
     def variants(self, flow: Flow) -> list[Self]:
         """The effect over the grid of its further parameters; itself alone when there are none."""
         names = [parameter.name for parameter in self.parameters]
-        grids = [[flow.scale(p.quantity, value) for value in p.values] for p in self.parameters]
+        grids = [[self.scaled(p, flow, value) for value in p.values] for p in self.parameters]
         return [dataclasses.replace(self, **dict(zip(names, values, strict=True))) for values in product(*grids)]
 
     def scan(self, flows: Sequence[Flow]) -> list[tuple[Self, float]]:
         """Variants with amplitudes that are not small, to begin a refit with; none where small ones lead there."""
         return []
+
+    def scaled(self, parameter: FurtherParameter, flow: Flow, relative: float) -> float:
+        """The absolute value of a further parameter whose relative value is given."""
+        return flow.scale(parameter.quantity, relative)
 
     def looked_at(self, flow: Flow) -> int:
         """How many variants the data were searched for, where that is more than `variants` gives."""
@@ -237,17 +249,17 @@ class Effect(ABC):
 
     def limits(self, flow: Flow) -> tuple[FloatArray, FloatArray]:
         """The physical range of the fitted further parameters."""
-        ranges = [_range(parameter, flow) for parameter in self.parameters if not self.fixed(parameter)]
+        ranges = [self._range(parameter, flow) for parameter in self.parameters if not self.fixed(parameter)]
         low, high = np.array(ranges, dtype=np.float64).reshape(-1, 2).T
+        return low, high
+
+    def _range(self, parameter: FurtherParameter, flow: Flow) -> tuple[float, float]:
+        if parameter.quantity in ("frequency", "time"):
+            ends = [self.scaled(parameter, flow, relative) for relative in (0.0, 1.0)]
+            return min(ends) / 2, max(ends) * 2
+        low, high = (self.scaled(parameter, flow, end) for end in (parameter.lowest, parameter.highest))
         return low, high
 
     def with_values(self, values: FloatArray) -> Self:
         """The same effect with other values of the fitted further parameters."""
         return dataclasses.replace(self, **dict(zip(self.fitted_names(), map(float, values), strict=True)))
-
-
-def _range(parameter: FurtherParameter, flow: Flow) -> tuple[float, float]:
-    if parameter.quantity in ("frequency", "time"):
-        ends = [flow.scale(parameter.quantity, relative) for relative in (0.0, 1.0)]
-        return min(ends) / 2, max(ends) * 2
-    return flow.scale(parameter.quantity, parameter.lowest), flow.scale(parameter.quantity, parameter.highest)

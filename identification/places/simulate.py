@@ -1,7 +1,7 @@
 """Steady response of a plant with effects, in the frequency domain."""
 
 import dataclasses
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -11,65 +11,111 @@ from identification.errors import MisuseError
 from identification.places.core import Reshaped, core_gradient, core_response
 from identification.places.linear import Coefficient, Divisor
 from identification.places.linear_path import images, linear_path
+from identification.places.loop import Loop
+from identification.places.motion import displacement, flow_rate
 from identification.places.nonlinear import Actuator, Added, Feedback, Sensor
-from identification.places.place import Effect, Flow, Setting, derivative, passing
+from identification.places.place import Effect, Flow, Setting, passing
+from identification.places.steady import Closing, steady
+from identification.signals import HeldInput
 
 Acting = tuple[Effect, FloatArray]
-Update = Callable[[ComplexArray], ComplexArray]
-Solver = Callable[[Update, ComplexArray, int], ComplexArray]
-MEMORY, LIMIT = 4, 60
-DIVERGED = 1e3
+FOLLOWED = 2
 
 
-class NoSteadyStateError(MisuseError):
-    """The fixed point of the feedback was not found: the effect is too strong to be computed from this start."""
-
-
-def simulate(
-    setting: Setting,
-    acting: Sequence[Acting],
-    batch: Batch,
-    start: ComplexArray | None = None,
-    solve: Solver | None = None,
-) -> Flow:
+def simulate(setting: Setting, acting: Sequence[Acting], batch: Batch, start: Flow | None = None) -> Flow:
     """The signals of a batch at the coefficients of `setting` for effects with amplitudes e (shapes, M).
 
-        u → g(u) → [ X = G (U − F{f(x, ẋ)}) ] → + modes → · factor, + parallel → h(y) → + d(t)
+        u → g(u) → [ X = G (U − F{f(q, q̇)}) ] → + modes → · factor, + parallel → h(y) → + d(t)
 
-    `start` (M, K): X to begin the search for the fixed point with; `solve` finds it, `fixed_point` when not given.
+    `start`: signals to begin the search for the steady state with; without them it is looked for at forces that grow.
     Raises NoSteadyStateError when there is none to be found, and MisuseError for effects that need records when the
     batch holds frequency responses.
     """
+    loop, setting = _prepared(setting, acting, batch)
+    if loop.forces:
+        x = steady(loop, None if start is None else loop.start(start.core, start.mean))
+        (core, mean), force = loop.split(x), loop.force_lines(x)
+        closing = Closing(loop, x)
+    else:
+        core, mean, force, closing = loop.driven, np.zeros(len(loop.driven)), np.zeros_like(loop.driven), None
+    core = core + _reaction(setting, acting, batch)
+    return _shown(setting, acting, loop, force, core, core, mean, closing)
+
+
+def followed(setting: Setting, acting: Sequence[Acting], batch: Batch, measured: ComplexArray) -> Flow:
+    """The same with the motion taken from the measured output (M, K) and not from the model: nothing is solved.
+
+        X̄ = ((h⁻¹(Ȳ) − parallel)/factor) − modes,   the output is that of X = G (U − F{f(q̄, q̄̇)})
+
+    with `core` X̄; h⁻¹ to first order in the amplitudes of sensors. Forces do not react to changes.
+    """
+    loop, setting = _prepared(setting, acting, batch)
+    seen = 2 * measured - _measured(measured, acting, batch)
+    core, mean, force = seen, np.zeros(len(seen)), np.zeros_like(seen)
+    for _ in range(FOLLOWED):
+        if loop.forces:
+            x = loop.balanced(loop.start(core, mean))
+            mean, force = loop.split(x)[1], loop.force_lines(x)
+        path = linear_path(acting, setting.points, batch.omega)
+        through = passing(loop.entering - force, loop.entering, batch.omega, _held(setting, batch))
+        core = (seen - path.beside * through) / path.factor - path.within * through
+    predicted = loop.driven - loop.response * force + _reaction(setting, acting, batch)
+    return _shown(setting, acting, loop, force, predicted, core, mean, None)
+
+
+def _held(setting: Setting, batch: Batch) -> HeldInput | None:
+    return None if setting.structure.is_discrete else batch.held
+
+
+def _prepared(setting: Setting, acting: Sequence[Acting], batch: Batch) -> tuple[Loop, Setting]:
+    """The loop, and the coefficients as effects change them."""
     if batch.signals is None and any(effect.needs_records for effect, _ in acting):
         raise MisuseError("effects that act on signals need periodic records", "effects")
     setting = _changed(setting, acting)
-    held = None if setting.structure.is_discrete else batch.held
+    held = _held(setting, batch)
     response = core_response(setting, acting, batch.omega)
     seen_otherwise = held is not None or any(isinstance(one, Reshaped) and one.on_entry for one, _ in acting)
     entry = core_response(setting, acting, batch.omega, held, True) if seen_otherwise else response
-    entering = _actuated(setting, acting, batch)
-    core, drive = _core(response, entry, entering, acting, setting, batch, start, solve or fixed_point)
-    path, beside_drive = linear_path(acting, setting.points, batch.omega), passing(drive, entering, batch.omega, held)
-    factored = path.factor * (core + path.within * beside_drive)
-    linear = factored + path.beside * beside_drive
+    forces = [(effect, e[0][:, None]) for effect, e in acting if isinstance(effect, Feedback) and not effect.driven]
+    loop = Loop(response, entry, _actuated(setting, acting, batch), forces, batch, _finer(setting, acting, Feedback))
+    return loop, setting
+
+
+def _reaction(setting: Setting, acting: Sequence[Acting], batch: Batch) -> ComplexArray:
+    """The forces of a motion that the input is, (M, K)."""
+    total, still = np.zeros_like(batch.inputs), np.zeros(len(batch.points))
+    for effect, e in acting:
+        if isinstance(effect, Feedback) and effect.driven:
+            finer = _finer(setting, acting, Feedback)
+            lines = displacement(batch.inputs, still, batch, effect.order), flow_rate(batch.inputs, batch, effect.order)
+            total += e[0][:, None] * effect.lines(batch, *(batch.signal(one, finer) for one in lines))
+    return total
+
+
+def _shown(
+    setting: Setting,
+    acting: Sequence[Acting],
+    loop: Loop,
+    force: ComplexArray,
+    predicted: ComplexArray,
+    core: ComplexArray,
+    mean: FloatArray,
+    closing: Closing | None,
+) -> Flow:
+    """What is seen of a core that gives `predicted` (M, K) at the forces (M, K)."""
+    batch, held, drive = loop.batch, _held(setting, loop.batch), loop.entering - force
+    path, through = linear_path(acting, setting.points, batch.omega), passing(drive, loop.entering, batch.omega, held)
+    factored = path.factor * (predicted + path.within * through)
+    linear = factored + path.beside * through
     if held is not None and path.acts:
-        linear = linear + images(setting, acting, batch.omega, held) * entering
-    output = _measured(linear, acting, batch)
-    return Flow(
-        batch,
-        setting,
-        response,
-        entry,
-        entering,
-        drive,
-        core,
-        factored,
-        linear,
-        output,
-        path.factor * np.ones_like(core),
-        tuple(acting),
-        lambda seen: core_gradient(setting, acting, batch.omega, held if seen else None, seen),
-    )
+        linear = linear + images(setting, acting, batch.omega, held) * loop.entering
+    output, factor = _measured(linear, acting, batch), path.factor * np.ones_like(core)
+    made = (loop.response, loop.entry, loop.entering, drive, core, factored, linear, output, factor, tuple(acting))
+
+    def gradient(seen: bool) -> ComplexArray:
+        return core_gradient(setting, acting, batch.omega, held if seen else None, seen)
+
+    return Flow(batch, setting, *made, gradient, mean, closing)
 
 
 def _changed(setting: Setting, acting: Sequence[Acting]) -> Setting:
@@ -105,38 +151,6 @@ def _actuated(setting: Setting, acting: Sequence[Acting], batch: Batch) -> Compl
     return batch.spectrum(signal)
 
 
-def _forces(acting: Sequence[Acting]) -> list[tuple[Feedback, FloatArray]]:
-    return [(effect, e[0][:, None]) for effect, e in acting if isinstance(effect, Feedback)]
-
-
-def _core(
-    response: ComplexArray,
-    entry: ComplexArray,
-    entering: ComplexArray,
-    acting: Sequence[Acting],
-    setting: Setting,
-    batch: Batch,
-    start: ComplexArray | None,
-    solve: Solver,
-) -> tuple[ComplexArray, ComplexArray]:
-    """X and the drive U − F{f} (M, K)."""
-    forces, driven = _forces(acting), entry * entering
-    if not forces:
-        return driven, entering
-    finer = _finer(setting, acting, Feedback)
-
-    def force(core: ComplexArray) -> ComplexArray:
-        x, velocity = batch.signal(core, finer), batch.signal(derivative(core, batch), finer)
-        total = np.zeros_like(x)
-        for effect, e in forces:
-            total += e * effect.force(x, velocity)
-        return batch.spectrum(total)
-
-    first, limit = (driven, 3 * LIMIT) if start is None else (start, LIMIT)
-    core = solve(lambda x: driven - response * force(x), first, limit)
-    return core, entering - force(core)
-
-
 def _measured(linear: ComplexArray, acting: Sequence[Acting], batch: Batch) -> ComplexArray:
     sensors = [(effect, e[0][:, None]) for effect, e in acting if isinstance(effect, Sensor)]
     output = linear
@@ -149,39 +163,3 @@ def _measured(linear: ComplexArray, acting: Sequence[Acting], batch: Batch) -> C
         if isinstance(effect, Added):
             output = output + np.einsum("im,ik->mk", e, effect.lines(batch))
     return output
-
-
-def fixed_point(update: Update, start: ComplexArray, limit: int = LIMIT, tolerance: float = 1e-8) -> ComplexArray:
-    """X = update(X) (M, K), each row by itself, by Anderson's mixing of the last four steps.
-
-    Raises NoSteadyStateError when a row has not settled to `tolerance` of its size after `limit` steps.
-    """
-    x, scale = start, float(np.linalg.norm(start)) + 1.0
-    steps: list[ComplexArray] = []
-    values: list[ComplexArray] = []
-    for _ in range(limit):
-        with np.errstate(over="ignore", invalid="ignore"):
-            value = update(x)
-        difference = value - x
-        if not np.all(np.isfinite(difference)) or np.linalg.norm(difference) > DIVERGED * scale:
-            break
-        size = np.linalg.norm(value, axis=1)
-        if np.all(np.linalg.norm(difference, axis=1) <= tolerance * size + np.finfo(float).tiny):
-            return value
-        steps, values = [*steps[-MEMORY:], difference], [*values[-MEMORY:], value]
-        x = _mixed(steps, values)
-    raise NoSteadyStateError("no steady state was found for this effect; its amplitude may be too large", "effects")
-
-
-def _mixed(steps: list[ComplexArray], values: list[ComplexArray]) -> ComplexArray:
-    """Σ α_i values_i with Σ α_i = 1 that makes ‖Σ α_i steps_i‖ least, in each row."""
-    if len(steps) == 1:
-        return values[0]
-    last = steps[-1]
-    changes = np.stack([last - other for other in steps[:-1]], axis=1)
-    gram = np.einsum("mik,mjk->mij", changes.conj(), changes).real
-    target = np.einsum("mik,mk->mi", changes.conj(), last).real
-    ridge = 1e-12 * np.trace(gram, axis1=1, axis2=2)[:, None, None] + np.finfo(float).tiny
-    weights = np.linalg.solve(gram + ridge * np.eye(len(steps) - 1), target[..., None])[..., 0]
-    offsets = np.stack([values[-1] - other for other in values[:-1]], axis=1)
-    return np.asarray(values[-1] - np.einsum("mi,mik->mk", weights, offsets))

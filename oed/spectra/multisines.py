@@ -12,7 +12,7 @@ from identification.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from identification.comparison.batch import EVEN, EXCITED, ODD, Batch
 from identification.errors import RangeError
 from identification.models.model import Model
-from identification.places.simulate import NoSteadyStateError
+from identification.places.steady import NoSteadyStateError
 from oed.hypothesis import noise_variances
 from oed.spectra.family import NEARLY, Block, Offer, foremost
 from oed.subject import Subject

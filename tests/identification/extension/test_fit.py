@@ -14,7 +14,7 @@ from identification.extension.fit import differences, fit
 from identification.extension.rows import Rows
 from identification.models.model import Model
 from identification.places.placed import placed
-from identification.places.simulate import NoSteadyStateError
+from identification.places.steady import NoSteadyStateError
 from identification.signals import FrequencyResponse
 from tests.support.oscillators import MODEL, POINTS, THETA, batches, integrated, phasors, records
 
@@ -108,7 +108,7 @@ def test_derivatives_at_the_edge_of_what_has_a_steady_state_are_taken_to_the_oth
     rows = Rows(batches(4, 0.3))
     hardening = MODEL.plus(placed(CubicStiffness(), 0, 1, 15.0))
     steady = hardening.respond(rows.batches[0])
-    brittle = Brittle(limit=1.0001 * abs(steady.core_signal(finer=2)).max())
+    brittle = Brittle(limit=1.0001 * abs(steady.motion(0, False, 2)[0]).max())
     at_the_edge = fit(hardening.plus(placed(brittle, 0, 1, 1.0)), rows, iterations=0, start=[steady])
     gain = len(THETA) - 1
     step = 0.1 / np.linalg.norm(at_the_edge.tangents[gain])
@@ -116,6 +116,6 @@ def test_derivatives_at_the_edge_of_what_has_a_steady_state_are_taken_to_the_oth
     more, less = (values + sign * step * np.eye(len(values))[gain] for sign in (1, -1))
     (flow,) = at_the_edge.flows
     with pytest.raises(NoSteadyStateError):
-        at_the_edge.model.with_parameters(more).respond(flow.batch, flow.core)
-    change = at_the_edge.model.with_parameters(less).respond(flow.batch, flow.core).output - flow.output
+        at_the_edge.model.with_parameters(more).respond(flow.batch, flow)
+    change = at_the_edge.model.with_parameters(less).respond(flow.batch, flow).output - flow.output
     assert differences(at_the_edge)[gain] == pytest.approx(rows.whiten([change]) / -step)

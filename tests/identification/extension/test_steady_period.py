@@ -28,7 +28,7 @@ from identification.models.model import Model
 from identification.models.rational import RationalStructure
 from identification.places.place import Effect
 from identification.places.placed import placed
-from identification.places.simulate import NoSteadyStateError
+from identification.places.steady import NoSteadyStateError
 from identification.scheduling import ParameterDependence, ProductBasis, SchedulingVariable
 from tests.support.oscillators import MODEL, PERIOD, SAMPLE_TIME, integrated, linear, phasors, played
 

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from identification.arrays import ComplexArray
 from identification.comparison.gather import gather
 from identification.effects.cubic_stiffness import CubicStiffness
 from identification.effects.delay import Delay
@@ -15,7 +14,6 @@ from identification.effects.rc_arc import RcArc
 from identification.effects.resonance import Resonance
 from identification.errors import MisuseError
 from identification.places.placed import placed
-from identification.places.simulate import NoSteadyStateError, fixed_point
 from identification.signals import FrequencyResponse
 from tests.support.oscillators import MODEL, OMEGA, batches, integrated, linear, phasors, played, records
 
@@ -71,16 +69,6 @@ def test_linear_effects_are_what_their_formula_says():
 def test_hysteresis_takes_energy_out():
     base, with_it = modelled(), modelled((Hysteresis(travel=0.1), 2.0))
     assert np.linalg.norm(with_it) < np.linalg.norm(base)
-
-
-def test_a_fixed_point_that_does_not_exist_is_said():
-    assert np.allclose(fixed_point(lambda x: 1 + 0.5j * x, np.zeros((1, 1), complex)), 1 / (1 - 0.5j))
-
-    def runaway(x: ComplexArray) -> ComplexArray:
-        return x * x + 10
-
-    with pytest.raises(NoSteadyStateError):
-        fixed_point(runaway, np.zeros((1, 1), complex))
 
 
 def test_effects_on_signals_need_records():

@@ -1,0 +1,106 @@
+"""The loop that forces close around a plant."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from identification.arrays import ComplexArray, FloatArray
+from identification.comparison.batch import Batch
+from identification.places.motion import displacement, flow_rate, static_stiffness
+from identification.places.nonlinear import Feedback
+
+BALANCING = 4
+
+
+@dataclass(frozen=True, eq=False)
+class Loop:
+    """X = H U − G F{Σ e_j f_j(q, q̇)}, q = s^(−d) x: G `response`, U `entering` (M, K), forces with e (M, 1).
+
+    H = `entry` is G as the input is seen through its hold.
+
+    Unknowns are the lines X (M, K) and, for d ≥ 1, the mean q₀ of the displacement as a further column (M, K + 1), for
+    which the forces balance at ω = 0: K q₀ + F₀ = U₀ with the static stiffness K of the plant.
+    """
+
+    response: ComplexArray
+    entry: ComplexArray
+    entering: ComplexArray
+    forces: Sequence[tuple[Feedback, FloatArray]]
+    batch: Batch
+    finer: int
+
+    @cached_property
+    def order(self) -> int:
+        """The largest d of the forces that act on the displacement."""
+        return max((effect.order for effect, _ in self.forces if effect.on_displacement), default=0)
+
+    @cached_property
+    def stiffness(self) -> FloatArray:
+        """K (M,)."""
+        return static_stiffness(self.response, self.batch, self.order)
+
+    def motion(self, effect: Feedback, x: ComplexArray) -> tuple[FloatArray, FloatArray]:
+        """q and q̇ (M, L·finer) that an effect sees."""
+        core, mean = self.split(x)
+        q = displacement(core, mean, self.batch, effect.order)
+        return self.batch.signal(q, self.finer), self.batch.signal(
+            flow_rate(core, self.batch, effect.order), self.finer
+        )
+
+    def split(self, x: ComplexArray) -> tuple[ComplexArray, FloatArray]:
+        """The lines and the mean; without it zero."""
+        return x[:, : len(self.batch.omega)], x[:, -1].real if self.order else np.zeros(len(x))
+
+    def force_lines(self, x: ComplexArray) -> ComplexArray:
+        """F (M, K) of all forces."""
+        total = np.zeros_like(self.response)
+        for effect, e in self.forces:
+            total += e * effect.lines(self.batch, *self.motion(effect, x))
+        return total
+
+    @cached_property
+    def driven(self) -> ComplexArray:
+        """What the input alone makes of X (M, K)."""
+        return np.asarray(self.entry * self.entering)
+
+    def update(self, x: ComplexArray) -> ComplexArray:
+        """What the lines and the mean would have to be for the forces that they cause."""
+        force = self.force_lines(x)
+        moved = self.driven - self.response * force
+        if not self.order:
+            return np.asarray(moved)
+        mean = x[:, -1].real
+        balance = (self.stiffness * mean + (force - self.entering)[:, 0].real) / self.yielding(x)
+        return np.concatenate([moved, (mean - balance)[:, None]], axis=1)
+
+    def yielding(self, x: ComplexArray) -> FloatArray:
+        """How fast the balance at ω = 0 changes with the mean, (M,)."""
+        by_mean = sum(
+            (e[:, 0] * effect.slopes(*self.motion(effect, x))[0].mean(axis=1) for effect, e in self._displaced),
+            start=np.zeros(len(x)),
+        )
+        total = self.stiffness + np.maximum(by_mean, 0.0)
+        return np.where(total > 0, total, 1.0)
+
+    @cached_property
+    def _displaced(self) -> list[tuple[Feedback, FloatArray]]:
+        return [(effect, e) for effect, e in self.forces if effect.on_displacement and effect.order]
+
+    def start(self, core: ComplexArray, mean: FloatArray | None = None) -> ComplexArray:
+        """Unknowns from the lines X."""
+        if not self.order:
+            return core
+        at = np.zeros(len(core)) if mean is None else mean
+        return np.concatenate([core, at[:, None]], axis=1)
+
+    def balanced(self, x: ComplexArray) -> ComplexArray:
+        """The unknowns with the lines as they are and the mean for which the forces balance."""
+        for _ in range(BALANCING if self.order else 0):
+            x = np.concatenate([x[:, :-1], self.update(x)[:, -1:]], axis=1)
+        return x
+
+    def part(self, share: float) -> "Loop":
+        """The loop with a share of all forces."""
+        return self if share >= 1 else replace(self, forces=[(effect, share * e) for effect, e in self.forces])

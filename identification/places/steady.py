@@ -1,0 +1,128 @@
+"""The steady state of a plant in the loop of its forces, and how a change inside it comes out."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from identification.arrays import ComplexArray
+from identification.errors import MisuseError
+from identification.places.linearised import Linearised
+from identification.places.loop import Loop
+from identification.places.mixing import mixed
+
+TOLERANCE, STALLED = 1e-8, 1e-5
+MIXING, PATIENCE, NEWTON, HALVINGS = 120, 8, 30, 4
+SMALLEST_SHARE = 1 / 16
+
+
+class NoSteadyStateError(MisuseError):
+    """The steady state of a plant with its forces was not found: there is none, or it does not repeat each period."""
+
+
+def steady(loop: Loop, start: ComplexArray | None = None) -> ComplexArray:
+    """The unknowns of the steady state; from `start`, or else from the response without forces.
+
+    Steps are mixed first, then Newton's; without a start forces that are too strong at once grow from a part to
+    the whole. Raises NoSteadyStateError where that does not lead to one.
+    """
+    if start is not None:
+        return _settled(loop, start)
+    share, step, x = 0.0, 1.0, loop.start(loop.driven)
+    while share < 1:
+        try:
+            x = _settled(loop.part(share + step), x)
+        except NoSteadyStateError:
+            step /= 4
+            if step < SMALLEST_SHARE:
+                raise
+            continue
+        share += step
+    return x
+
+
+def _settled(loop: Loop, x: ComplexArray) -> ComplexArray:
+    with np.errstate(over="ignore", invalid="ignore"):
+        x, done = _mixed(loop, x)
+        return x if done else _newton(loop, x)
+
+
+def _mixed(loop: Loop, x: ComplexArray) -> tuple[ComplexArray, bool]:
+    """Anderson's mixing of the last steps, as long as it leads down; the best unknowns, and whether they are it."""
+    steps: list[ComplexArray] = []
+    values: list[ComplexArray] = []
+    best, sizes = x, [np.inf]
+    for i in range(MIXING):
+        value = loop.update(x)
+        difference = value - x
+        size = _error(difference, value)
+        if not np.isfinite(size) or size > 1e3 * min(sizes):
+            break
+        if size < min(sizes):
+            best = x
+        sizes.append(size)
+        if size <= TOLERANCE:
+            return value, True
+        if i >= PATIENCE and min(sizes) > 0.5 * min(sizes[:-PATIENCE]):
+            break
+        steps, values = [*steps[-4:], difference], [*values[-4:], value]
+        x = mixed(steps, values)
+    return best, False
+
+
+def _newton(loop: Loop, x: ComplexArray) -> ComplexArray:
+    """Newton's method, each record with its own length of the step."""
+    rest = loop.update(x) - x
+    for _ in range(NEWTON):
+        step = Linearised(loop, x).solve(rest)
+        x, rest, moved = _line_search(loop, x, rest, step)
+        size = _error(rest, x)
+        if size <= TOLERANCE or (size <= STALLED and not moved):
+            return x
+        if not moved or not np.isfinite(size):
+            break
+    if _error(rest, x) <= STALLED:
+        return x
+    raise NoSteadyStateError("no steady state was found for this effect; its amplitude may be too large", "effects")
+
+
+def _line_search(
+    loop: Loop, x: ComplexArray, rest: ComplexArray, step: ComplexArray
+) -> tuple[ComplexArray, ComplexArray, bool]:
+    before = np.linalg.norm(rest, axis=1)
+    length = np.ones(len(x))
+    best, best_rest = x.copy(), rest.copy()
+    least = before.copy()
+    for _ in range(HALVINGS):
+        trial = x + length[:, None] * step
+        left = loop.update(trial) - trial
+        size = np.linalg.norm(left, axis=1)
+        better = np.isfinite(size) & (size < least)
+        best[better], best_rest[better], least[better] = trial[better], left[better], size[better]
+        waiting = ~(least < before * (1 - 0.1 * length)) & (before > 0)
+        if not np.any(waiting):
+            break
+        length = np.where(waiting, length / 3, length)
+    return best, best_rest, bool(np.any(least < 0.99 * before))
+
+
+def _error(difference: ComplexArray, value: ComplexArray) -> float:
+    size = np.linalg.norm(value, axis=1) + np.finfo(float).tiny
+    return float(np.max(np.linalg.norm(difference, axis=1) / size))
+
+
+@dataclass(frozen=True, eq=False)
+class Closing:
+    """A change of the lines of the core that forces do not react to yet, turned into one that they react to."""
+
+    loop: Loop
+    x: ComplexArray
+
+    @cached_property
+    def _linearised(self) -> Linearised:
+        return Linearised(self.loop, self.x)
+
+    def __call__(self, change: ComplexArray) -> ComplexArray:
+        """(M, K) from (M, K)."""
+        wanted = self.loop.start(change)
+        return self.loop.split(self._linearised.solve(wanted))[0]
