@@ -144,7 +144,7 @@ def _resolution(time: FloatArray) -> float:
         (10.0**-places for places in range(-3, 13) if np.all(_is_whole(time * 10.0**places, largest * 10.0**places))),
         0.0,
     )
-    is_single = bool(np.all(np.abs(time - time.astype(np.float32)) <= 1e-9 * largest))
+    is_single = bool(np.all(np.abs(time - time.astype(np.float32)) <= 0.02 * single))
     return max(single if is_single else 0.0, decimal, double)
 
 

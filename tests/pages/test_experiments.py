@@ -102,10 +102,10 @@ def test_a_broken_file_shows_its_problem_at_the_field(here: Visit) -> None:
     ("name", "content", "told"),
     [
         ("cut.npz", npz_writer.write(columns())[:200], "not a whole npz file"),
-        ("none.mat", b"MATLAB" * 100, "no MATLAB file of level 5"),
+        ("none.mat", b"MATLAB" * 100, "no MATLAB file of level 5 or 7.3"),
         ("none.json", b"{not json", "the file is no JSON"),
         ("other.json", b'{"kind": "timeRecord"}', "please fill this in"),
-        ("notes.pdf", b"%PDF", "must end in .csv, .npz, .mat or .json"),
+        ("notes.pdf", b"%PDF", "files of this kind are not read"),
     ],
 )
 def test_what_is_no_measurement_is_told_so(here: Visit, name: str, content: bytes, told: str) -> None:

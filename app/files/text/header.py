@@ -36,6 +36,8 @@ def header_of(lines: Sequence[str], layout: Layout) -> Header:
     if not above:
         return Header(None, ())
     split = [_split(line, layout) for line in above]
+    while len(split) > 1 and split[-1] is None and split[-2] is not None:
+        split.pop()  # a line such as "End Comments" below the names
     nearest = split[-1]
     if nearest is None:
         count = len(cells_of(_MARK.sub("", above[-1]), layout.separator))

@@ -12,7 +12,9 @@ const KNOWN = {
   frequencyHz: ["frequencieshertz", "frequencyhertz", "frequencyhz", "freqhz", "frequencieshz", "hz"],
 };
 
-export const formatOf = (name) => /\.(csv|tsv|txt|npz|mat|json)$/i.exec(name)?.[1].toLowerCase() ?? null;
+const ENDINGS = /\.(json|csv|tsv|txt|dat|asc|prn|data|tab|dta|mpt|z|zpw|npz|mat|xlsx|xlsm|parquet|pq|feather|arrow|ipc|h5|hdf5|hdf|[szy]\dp|ts|uff|unv|uf58|bunv|tdms|mf4|mdf)$/i;
+
+export const formatOf = (name) => ENDINGS.exec(name)?.[1].toLowerCase() ?? null;
 
 // The names of columns (csv) or arrays (npz); null where they cannot be seen.
 export async function columnsOf(file) {

@@ -43,7 +43,7 @@ function installDrop(take) {
 function take(files, designs) {
   for (const file of files) {
     if (!formatOf(file.name)) {
-      byId("incoming").append(message("problem", `${file.name}: the name of a file must end in .csv, .npz, .mat or .json.`));
+      byId("incoming").append(message("problem", `${file.name}: files of this kind are not read; .csv, .txt, .npz, .mat, .xlsx, .h5, .json and others are.`));
       continue;
     }
     const card = new FileCard(file, described, designs, { onMade: refresh, onGone: () => { cards.delete(card); drawAll(); } });
