@@ -13,6 +13,7 @@ import numpy as np
 
 from identification.arrays import FloatArray, IntArray
 from oed.master import MasterSolution, solve_master
+from oed.pencil import largest_eigenvalues
 from oed.spectra.family import Block, Pricing
 
 Progress = Callable[[int, float], None]
@@ -195,7 +196,7 @@ def needed_scale(total: FloatArray, targets: FloatArray) -> float:
     """The least s with s · total ⪰ R_j for every j; infinite where the total cannot reach them."""
     values, vectors = np.linalg.eigh(total)
     root = vectors / np.sqrt(np.maximum(values, 1e-14 * max(values[-1], 1e-300)))
-    return float(np.linalg.eigvalsh(root.T @ targets @ root)[:, -1].max())
+    return float(largest_eigenvalues(root.T @ targets @ root, relative=True).max())
 
 
 def _remembered(weights: Sequence[FloatArray], least: float, everything: bool) -> list[FloatArray]:
@@ -212,9 +213,9 @@ def _with_violated(active: IntArray, blocks: Sequence[Block], master: MasterSolu
     """The active targets and those that the solution misses most."""
     if len(active) == len(targets):
         return active
-    slack = np.linalg.eigvalsh(_total(blocks, master.weights) - targets)[:, 0]
-    missed = np.argsort(slack)[: ACTIVE_TARGETS // 2]
-    return np.union1d(active, missed[slack[missed] < -1e-9])
+    missing = largest_eigenvalues(targets - _total(blocks, master.weights), relative=False)
+    missed = np.argsort(-missing)[: ACTIVE_TARGETS // 2]
+    return np.union1d(active, missed[missing[missed] > 1e-9])
 
 
 def _semidefinite(weight: FloatArray) -> FloatArray:

@@ -166,7 +166,7 @@ def _binding(problem: ScaledProblem, solution: CertifiedSpectra) -> tuple[Bindin
     by_target = np.zeros(len(problem.original.targets))
     numbers = {int(j): n for n, j in enumerate(problem.asking)}
     for target, j, rows in problem.statement.parts:
-        if j in numbers:
+        if j in numbers and solution.prices[numbers[j]].any():
             here = np.ix_(inside := problem.inside(rows), inside)
             worth = np.sum(problem.targets[numbers[j]][here] * solution.prices[numbers[j]][here])
             by_target[target] += float(worth) / solution.energy

@@ -9,7 +9,10 @@ import numpy as np
 from scipy.sparse import csc_array
 
 from identification.arrays import FloatArray, IntArray
+from oed.low_rank_master import solve_low_rank
 from oed.spectra.family import Block
+
+MOST_GENERAL = 10
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,7 +39,13 @@ def solve_master(
         min Σ_b tr W_b   s.t.   Σ_b Σ_rs (W_b)_rs I_b,rs ⪰ R_j for all j,   Σ_{b at m} tr W_b ≤ α_m,   W_b ⪰ 0
 
     With `shortfall_only` the energy is free and the least t ≥ 0 is sought for which the targets (1 − t) R_j are met.
+    Single spectra that tell little more than one direction each, of many parameters and without caps, are solved by
+    `low_rank_master`, everything else by the general conic solver.
     """
+    if targets.shape[-1] > MOST_GENERAL and not np.isfinite(caps).any() and all(block.parts for block in blocks):
+        found = solve_low_rank(blocks, targets, accuracy)
+        if found.solved:
+            return MasterSolution(list(found.weights[:, None, None]), found.prices, np.zeros(len(caps)), 0.0, True)
     layout = _Layout([len(block.shapes) for block in blocks])
     capped = np.intersect1d(np.flatnonzero(np.isfinite(caps)), [block.point for block in blocks])
     k, j = targets.shape[-1], len(targets)

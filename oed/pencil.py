@@ -10,8 +10,8 @@ from identification.arrays import BoolArray, FloatArray
 EPSILON = float(np.finfo(np.float64).eps)
 CANCELLED = 1e-14
 COARSEST = 1e-6
-LARGEST = 1e200
-LEAST = 1e-150
+LARGEST = 1e100
+LEAST = 1e-60
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,7 +74,7 @@ class Pencil:
         """The least s ≥ 0 with Π + s X ⪰ R_j for all j; infinite where there is none."""
         if self.unreached(targets).any():
             return np.inf
-        return _crossing(lambda s: float(_largest(self.asked(targets, s)).max(initial=0.0)))
+        return _crossing(lambda s: float(largest_eigenvalues(self.asked(targets, s)).max(initial=0.0)))
 
     def enough(self, targets: FloatArray) -> float:
         """An s with Π + s X ⪰ R_j for all j, at most r times the least: from traces of reached targets."""
@@ -91,7 +91,7 @@ def shares(prior: FloatArray, gain: FloatArray, targets: FloatArray) -> FloatArr
     which nothing is known.
     """
     pencil = Pencil.of(prior, gain)
-    result = _largest(pencil.asked(targets, 1.0)) if pencil.prior.size else np.zeros(len(targets))
+    result = largest_eigenvalues(pencil.asked(targets, 1.0)) if pencil.prior.size else np.zeros(len(targets))
     return np.asarray(np.where(pencil.unreached(targets), np.inf, result))
 
 
@@ -122,13 +122,20 @@ def _factor(information: FloatArray) -> FloatArray:
     return np.asarray((vectors[:, kept] * np.sqrt(values[kept])).T * size)
 
 
-def _largest(matrices: FloatArray) -> FloatArray:
-    """The largest eigenvalue of each, found for those alone that the traces do not rule out; else the trace (J,)."""
+def largest_eigenvalues(matrices: FloatArray, relative: bool = False) -> FloatArray:
+    """The largest eigenvalue of each symmetric matrix (J, k, k), or where it cannot matter a bound of it, (J,).
+
+        m + s/√(k − 1) ≤ λ ≤ m + s √(k − 1),   m = tr A/k,  s² = tr A²/k − m²       [WolkowiczStyan1980, Theorem 2.1]
+
+    It matters where it may exceed one or be the largest of all, with `relative` where it may be the largest of all.
+    """
     size = matrices.shape[-1]
-    result = np.trace(matrices, axis1=1, axis2=2)
+    trace = np.trace(matrices, axis1=1, axis2=2)
+    spread = np.maximum(np.einsum("jab,jab->j", matrices, matrices) - trace**2 / max(size, 1), 0.0) / max(size, 1)
+    result = trace / max(size, 1) + np.sqrt(max(size - 1, 0) * spread)
     if size and len(matrices):
-        least = min(float(result.max()) / size, 1.0)
-        high = np.flatnonzero(result >= least)
+        least = float((trace / size + np.sqrt(spread / max(size - 1, 1))).max())
+        high = np.flatnonzero(result >= least if relative else result >= min(least, 1.0))
         result[high] = np.linalg.eigvalsh(matrices[high])[:, -1]
     return np.asarray(result)
 

@@ -101,6 +101,8 @@ def _base_places(model: Model, plant: int) -> IntArray:
 
 
 def _embedded(matrix: FloatArray, places: IntArray, size: int) -> FloatArray:
+    if len(places) == size:
+        return matrix
     result = np.zeros((size, size))
     result[np.ix_(places, places)] = matrix
     return result

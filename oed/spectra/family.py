@@ -14,6 +14,7 @@ from oed.subject import Subject
 
 NEARLY = 0.97
 MOST_OFFERED = 100
+NEGLIGIBLE = 1e-15
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,16 +22,30 @@ class Block:
     """Spectra at one operating point, spanned by r shapes with a weight W (r, r) ⪰ 0.
 
     The input energy is tr W and the information Σ_ab W_ab `information`_ab; `information` is (r, r, k, k). What the
-    rows of `shapes` mean is known to the family alone.
+    rows of `shapes` mean is known to the family alone. `parts`, of a single shape: the rows of the parts of the
+    parameters between which there is no information; `columns` B (k, q): the information is B Bᵀ within each of them.
     """
 
     point: int
     shapes: FloatArray
     information: FloatArray
+    parts: tuple[slice, ...] = ()
+    columns: FloatArray | None = None
+
+    def factor(self, part: slice) -> FloatArray:
+        """B (k_part, q) with the information B Bᵀ within a part."""
+        return root(self.information[0, 0][part, part]) if self.columns is None else self.columns[part]
 
     def total(self, weight: FloatArray) -> FloatArray:
         """Σ_ab W_ab information_ab, (k, k)."""
         return np.asarray(np.einsum("ab,abij->ij", weight, self.information))
+
+
+def root(matrix: FloatArray) -> FloatArray:
+    """L (k, r) with L Lᵀ the positive semidefinite matrix (k, k), few columns where it has few directions."""
+    values, vectors = np.linalg.eigh(matrix)
+    kept = values > NEGLIGIBLE * values.max(initial=0.0)
+    return np.asarray(vectors[:, kept] * np.sqrt(values[kept]))
 
 
 class Spectrum(Protocol):

@@ -7,16 +7,17 @@ from typing import Annotated, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from identification.arrays import ComplexArray, FloatArray, IntArray
+from identification.arrays import FloatArray, IntArray
 from identification.comparison.batch import Batch
 from identification.errors import RangeError
 from identification.models.model import Model
 from oed.hypothesis import response_batch
-from oed.spectra.family import NEARLY, Block, Offer, foremost
+from oed.spectra.family import NEARLY, Block, Offer, foremost, root
 from oed.subject import Subject
 
 MOST_SENSITIVITIES = 2**26
 MOST_REFERENCE = 256
+SENSITIVITIES_AT_ONCE = 2**22
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,8 +74,13 @@ class LineSpectra:
                 " use fewer samples per period, a narrower band, or fewer operating points",
                 "samples",
             )
-        sensitivities = subject.sensitivity(points, frequencies)
-        return LinePricing(frequencies, indices, self.samples, sensitivities, subject.mask)
+        p = np.asarray(points, dtype=np.float64)
+        at_once = max(1, SENSITIVITIES_AT_ONCE // (len(frequencies) * subject.size))
+        rows = np.empty((len(p), len(frequencies), 2, subject.size))
+        for start in range(0, len(p), at_once):
+            here = subject.sensitivity(p[start : start + at_once], frequencies)
+            rows[start : start + at_once, :, 0], rows[start : start + at_once, :, 1] = here.real, here.imag
+        return LinePricing(frequencies, indices, self.samples, rows, subject.slices)
 
     def reference(
         self, model: Model, points: ArrayLike, band: tuple[float, float] | None, sample_time: float
@@ -101,7 +107,7 @@ class LineSpectra:
 
 @dataclass(frozen=True, eq=False)
 class LinePricing:
-    """The lines at M points: `sensitivities` a (M, F, k) whose products count where `mask` (k, k) is one.
+    """The lines at M points: `rows` (M, F, 2, k), Re a and Im a; products count within each of the `parts` of k alone.
 
     A block's only shape holds the number of its line.
     """
@@ -109,13 +115,13 @@ class LinePricing:
     frequencies: FloatArray
     indices: IntArray
     samples: int
-    sensitivities: ComplexArray
-    mask: FloatArray
+    rows: FloatArray
+    parts: tuple[slice, ...]
 
     @property
     def places(self) -> IntArray:
         """One local experiment an operating point."""
-        return np.arange(len(self.sensitivities))
+        return np.arange(len(self.rows))
 
     def limits(self, caps: FloatArray, samples: int) -> FloatArray:
         """The caps; energy is spread over whatever time there is."""
@@ -127,16 +133,13 @@ class LinePricing:
 
     def flat(self) -> list[Block]:
         """Equal energy on all lines, as a block without a line of its own."""
-        information = np.einsum("mfi,mfj->mij", self.sensitivities, self.sensitivities.conj()).real
-        mean = self.mask * information / len(self.frequencies)
-        return [Block(m, np.full((1, 1), -1.0), matrix[None, None]) for m, matrix in enumerate(mean)]
+        return [self._flat(m) for m in range(len(self.rows))]
 
     def best(
         self, prices: FloatArray, charges: FloatArray, blocks: Sequence[Block], weights: Sequence[FloatArray]
     ) -> Offer:
         """a* Z a on all lines; offered are the highest peaks that are worth their charge, and the lines in use."""
-        a = self.sensitivities
-        worth = np.einsum("mfi,mfi->mf", (a @ (self.mask * prices)), a.conj()).real
+        worth = self._worth(prices)
         highest = worth.max(axis=1)
         padded = np.pad(worth, [(0, 0), (1, 1)], constant_values=-np.inf)
         peak = (worth >= padded[:, :-2]) & (worth >= padded[:, 2:])
@@ -150,8 +153,10 @@ class LinePricing:
 
     def transformed(self, basis: FloatArray) -> "LinePricing":
         """The same for the parameters basis⁻¹ θ_G."""
-        mask = np.sign(abs(basis.T) @ self.mask @ abs(basis))
-        return replace(self, sensitivities=self.sensitivities @ basis, mask=mask)
+        places = [np.flatnonzero(np.any(basis[part] != 0, axis=0)) for part in self.parts]
+        parts = tuple(slice(int(place[0]), int(place[-1]) + 1) if len(place) else slice(0, 0) for place in places)
+        flat = self.rows.reshape(-1, self.rows.shape[-1]) @ basis
+        return replace(self, rows=flat.reshape(*self.rows.shape[:-1], -1), parts=parts)
 
     def spectrum(self, blocks: Sequence[Block], weights: Sequence[FloatArray]) -> LineSpectrum:
         """The lines of blocks of one point, in the order of frequency."""
@@ -162,6 +167,30 @@ class LinePricing:
         used = energies > 0
         return LineSpectrum(self.frequencies[used], energies[used], self.indices[used], self.samples)
 
+    def _worth(self, prices: FloatArray) -> FloatArray:
+        """a* Z a (M, F), by products with the root of Z, which has few columns where few directions bind."""
+        points, lines, _, k = self.rows.shape
+        roots = [root(prices[part, part]) for part in self.parts]
+        at_once = max(1, SENSITIVITIES_AT_ONCE // (2 * lines * max(k, 1)))
+        worth = np.zeros((points, lines))
+        for start in range(0, points, at_once):
+            here = self.rows[start : start + at_once]
+            for part, factor in zip(self.parts, roots, strict=True):
+                seen = here[..., part].reshape(-1, factor.shape[0]) @ factor
+                worth[start : start + at_once] += np.einsum("nr,nr->n", seen, seen).reshape(len(here), lines, 2).sum(-1)
+        return worth
+
+    def _flat(self, point: int) -> Block:
+        rows = self.rows[point].reshape(-1, self.rows.shape[-1]) / np.sqrt(len(self.frequencies))
+        return Block(int(point), np.full((1, 1), -1.0), self._information(rows), self.parts)
+
     def _block(self, point: int, line: int) -> Block:
-        a = self.sensitivities[point, line]
-        return Block(int(point), np.full((1, 1), float(line)), (self.mask * np.outer(a, a.conj()).real)[None, None])
+        rows = self.rows[point, line]
+        return Block(int(point), np.full((1, 1), float(line)), self._information(rows), self.parts, rows.T)
+
+    def _information(self, rows: FloatArray) -> FloatArray:
+        """(1, 1, k, k)"""
+        information = np.zeros((1, 1, rows.shape[1], rows.shape[1]))
+        for part in self.parts:
+            information[0, 0, part, part] = rows[:, part].T @ rows[:, part]
+        return information
