@@ -1,8 +1,8 @@
 """The data directory of an earlier version.
 
 `tests/data/data_directory_of_c841d1c.tar.xz` was left by the service of that commit, killed with one job running and
-one waiting: plants of every kind of structure, experiments still, as matrices and along p(t), models identified, stated,
-extended, in state space and from varying scheduling, and one of every other resource.
+one waiting: plants of every kind of structure, experiments still, as matrices and along p(t), models identified,
+stated, extended, in state space and from varying scheduling, and one of every other resource.
 """
 
 import tarfile
