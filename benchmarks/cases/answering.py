@@ -61,8 +61,8 @@ def not_judged(name: str, error: Exception) -> Answer:
 def announced(steps: Sequence[Step]) -> list[str]:
     """The kinds that were added, in order, then those that could not be told apart from the first of them."""
     kinds = [one.effect.kind for one in steps[-1].model.effects]
-    kinds += [one.score.candidate.effect.kind for one in steps[0].diagnosis.announced]
-    return list(dict.fromkeys(kinds))
+    alike = [one.score.candidate.effect.kind for one in steps[0].diagnosis.announced]
+    return list(dict.fromkeys([*kinds, *(alike if not kinds or kinds[0] in alike else [])]))
 
 
 def verdict(steps: Sequence[Step]) -> str:

@@ -13,7 +13,6 @@ from identification.diagnosis.scores import Score
 from identification.extension.fit import Fit, fit
 from identification.extension.rows import Rows
 from identification.models.model import Model
-from identification.places.moving import may_move
 from identification.places.placed import PlacedEffect
 
 SHORT_LIST = 8
@@ -24,6 +23,7 @@ HOPELESS, HOPELESS_SHARE = 60.0, 1.5
 HELD = 10.0
 LONGER = 40
 STRICT = 1e-3
+IN_THE_RUNNING = 0.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,6 +99,8 @@ def refit_short_list(
             least = min(least, float(one.residual @ one.residual))
     if not found:
         return ShortList((), none, beside, 1.0)
+    best = min((one for _, one in found), key=lambda one: one.cost)
+    found = [(score, _let_go(base, one, best)) for score, one in found]
     best = min((one for _, one in found), key=lambda one: one.cost)
     count = effective_count(best.rows, best.residual)
     evidence = sorted((_judged(model, *pair, count) for pair in found), key=lambda one: one.bic)
@@ -178,24 +180,33 @@ def _refitted(base: Fit, score: Score, hopeless: float, origin: Model | None) ->
         one = score.signature.placed
         starts = scanned_starts(base, origin, one.effect, one.degree)
         found += [fit(start, base.rows, iterations=13, tolerance=0.05) for start in starts]
-    count = effective_count(found[0].rows, min(found, key=lambda one: one.cost).residual)
-
-    def price(one: Fit) -> float:
-        return one.cost * count / one.rows.count + len(one.model.effects[-1].parameters()) * float(np.log(count))
-
-    best = min(found, key=price)
-    best = min([best, *_moved(best)], key=price)
+    best = min(found, key=lambda one: one.cost)
     if not best.outcome.ok and float(best.residual @ best.residual) < hopeless:
         best = fit(best.model, base.rows, iterations=LONGER, tolerance=0.05, start=best.flows)
     return None if _beyond(best.model.effects[-1]) else best
 
 
-def _moved(found: Fit) -> list[Fit]:
-    """Fits in which a further parameter of the effect changes over the range of p, from where it stands still."""
-    last, rest_ = found.model.effects[-1], found.model.effects[:-1]
+def _let_go(base: Fit, found: Fit, best: Fit) -> Fit:
+    """A fit that is in the running, with a further parameter of its effect let go where that lowers BIC by six."""
+    noise = found.rows.scaled and found.cost < found.rows.count
+    if noise or base.cost - found.cost < IN_THE_RUNNING * (base.cost - best.cost):
+        return found
+    count = effective_count(best.rows, best.residual)
+
+    def price(one: Fit) -> float:
+        return one.cost * count / one.rows.count + len(one.model.effects[-1].parameters()) * float(np.log(count))
+
+    freer = [one for one in _freer(found) if not _beyond(last := one.model.effects[-1]) and not on_bound(last, one)]
+    other = min(freer, key=price, default=found)
+    return other if price(other) < price(found) - LIKELY else found
+
+
+def _freer(found: Fit) -> list[Fit]:
+    """Fits with one further parameter of the effect let go."""
+    last, rest = found.model.effects[-1], found.model.effects[:-1]
     points = np.concatenate([flow.setting.points for flow in found.flows])
-    moving = [replace(last, effect=one) for one in may_move(last.effect, points)]
-    models = [replace(found.model, effects=(*rest_, one), joint_covariance=None) for one in moving]
+    moving = [replace(last, effect=one) for one in last.effect.freer(points)]
+    models = [replace(found.model, effects=(*rest, one), joint_covariance=None) for one in moving]
     return [fit(model, found.rows, iterations=13, tolerance=0.05, start=found.flows) for model in models]
 
 

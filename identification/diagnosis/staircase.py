@@ -1,6 +1,6 @@
 """Effects added one by one until the noise explains what is left; every step is kept."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,6 +9,7 @@ from identification.comparison.batch import EXCITED, Batch
 from identification.diagnosis.cross_validation import bears_out
 from identification.diagnosis.diagnose import Diagnosis, diagnose
 from identification.diagnosis.evidence import LONGER, on_bound
+from identification.diagnosis.exchange import looked_over
 from identification.diagnosis.verdict import Verdict
 from identification.extension.fit import Fit, fit
 from identification.models.model import Model
@@ -59,9 +60,14 @@ def staircase(
     """Diagnose, add the best announced effect that cross-validation bears out, fit all together, and again.
 
     Ends when no effect is announced, after `largest` effects, or when every announced effect would raise the error on
-    data that were left out of the fit (`cross_validation`) or leave the model without a steady state. Held-out data are
-    looked at for the report only.
+    data that were left out of the fit (`cross_validation`) or leave the model without a steady state. Where several
+    were added, the set is looked over once more at the end, and the steps are those to what it has become. Held-out
+    data are looked at for the report only.
     """
+
+    def step(found: Fit) -> Step:
+        return _step(found, batches, held_out, diagnose(found.model, batches, effects, degree, seed))
+
     first = diagnose(model, batches, effects, degree, seed)
     steps = [_step(first.base, batches, held_out, first)]
     while steps[-1].diagnosis.announced and len(steps) <= largest:
@@ -69,10 +75,32 @@ def staircase(
         if grown is None:
             break
         try:
-            steps.append(_step(grown, batches, held_out, diagnose(grown.model, batches, effects, degree, seed)))
+            steps.append(step(grown))
         except NoSteadyStateError:
             break
-    return tuple(steps)
+    return tuple(steps) if len(steps) < 3 else _looked_over(steps, batches, effects, degree, seed, step)
+
+
+def _looked_over(
+    steps: Sequence[Step],
+    batches: Sequence[Batch],
+    effects: Sequence[Effect] | None,
+    degree: int,
+    seed: int,
+    step: Callable[[Fit], Step],
+) -> tuple[Step, ...]:
+    """The steps to the set of effects that exchanging and dropping leads to, the one that explains most first."""
+    other = looked_over(steps[-1].fit, batches, effects, degree, seed)
+    if other is None:
+        return tuple(steps)
+    found = refined(other)
+    path, left = [steps[0]], list(found.model.effects)
+    while len(left) > 1:
+        trials = [fit(path[-1].model.plus(one), found.rows) for one in left]
+        best = min(range(len(left)), key=lambda i: trials[i].cost)
+        del left[best]
+        path.append(step(refined(trials[best])))
+    return (*path, step(found))
 
 
 def _grown(found: Diagnosis) -> Fit | None:

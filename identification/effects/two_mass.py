@@ -9,6 +9,7 @@ import numpy as np
 from identification.arrays import ComplexArray, FloatArray
 from identification.comparison.batch import Batch
 from identification.places.core import Plant, Reshaped
+from identification.places.motion import motions
 from identification.places.place import Flow, FurtherParameter, Setting
 from identification.signals import HeldInput
 
@@ -19,11 +20,12 @@ FREQUENCIES = (0.1, 0.2, 0.3, 0.4, 0.45, 0.5, 0.55, 0.6, 0.65, 0.7, 0.75, 0.8, 0
 class TwoMass(Reshaped):
     """A mass e behind a spring and a damper, hung on to the output: Y = G U/(1 + e l(ω) G).
 
-        l(s) = s^{2−d} (1 + 2ζ s/ω_z)/(1 + 2ζ s/ω_z + g(p) (s/ω_z)²),   d = `order` of the output: 1 for a speed
+        l(s) = s^{1−d} (s + ν/g) (1 + γ s)/(1 + γ s + s (g s + ν)/ω_z²),   γ = 2ζ/ω_z,   d the `order` of the output
 
-    ω_z = `frequency` is where the second mass holds the first still, ζ = `damping`; below it the masses move as one.
-    Where the mass grows with p, to `ratio` times at the upper end of what it is at the lower, it is e g(p), g linear
-    and one amid the range, and pole and zero move together [Ljung1999, Section 4.2].
+    ω_z = `frequency` is where the second mass holds the first still, ζ = `damping` of the spring, ν = `friction` of the
+    mass itself in 1/s, d = 1 for a speed; below ω_z the masses move as one. Where the mass grows with p, to `ratio`
+    times at the upper end of what it is at the lower, it is e g(p), g linear and one amid the range, and pole and zero
+    move together [Ljung1999, Section 4.2].
     """
 
     kind: ClassVar[str] = "two_mass"
@@ -36,13 +38,15 @@ class TwoMass(Reshaped):
     unjudged: ClassVar[str] = "the model is in discrete time, where forces and masses have no place of their own"
     parameters: ClassVar[tuple[FurtherParameter, ...]] = (
         FurtherParameter("frequency", "frequency", FREQUENCIES),
-        FurtherParameter("damping", "number", (0.02, 0.15), highest=0.7),
-        FurtherParameter("ratio", "number", (1.0, 0.4, 2.5), lowest=0.02, highest=50.0),
+        FurtherParameter("damping", "number", (0.05,), highest=0.7),
+        FurtherParameter("ratio", "number", (1.0,), lowest=0.02, highest=50.0),
+        FurtherParameter("friction", "number", (0.0,)),
     )
 
     frequency: float = 1.0
     damping: float = 0.05
     ratio: float = 1.0
+    friction: float = 0.0
     variable: int = 0
     order: int = 1
 
@@ -56,10 +60,10 @@ class TwoMass(Reshaped):
 
     def load(self, points: FloatArray, omega: FloatArray) -> ComplexArray:
         """l (M, K)."""
-        s = 1j * omega / self.frequency
-        held = 1 + 2 * self.damping * s
-        carried = held / (held + self.growth(points)[:, None] * s**2)
-        return np.asarray((1j * omega) ** (2 - self.order) * carried)
+        s, g = 1j * omega, self.growth(points)[:, None]
+        spring = 1 + 2 * self.damping / self.frequency * s
+        carried = (s + self.friction / g) * spring / (spring + s * (g * s + self.friction) / self.frequency**2)
+        return np.asarray(s ** (1 - self.order) * carried)
 
     def reshaped(
         self, e: FloatArray, plant: Plant, setting: Setting, omega: FloatArray, held: HeldInput | None
@@ -80,25 +84,34 @@ class TwoMass(Reshaped):
     def scan(self, flows: Sequence[Flow]) -> list[tuple[Self, float]]:
         """Masses from a fifth to twice of what counts as much as the plant at ω_z."""
         found = []
+        points = np.concatenate([flow.setting.points for flow in flows])
         for one in self.variants(flows[0]):
-            if one.damping == self.parameters[1].values[0]:
-                near = [abs(f.response[:, np.argmin(abs(f.batch.omega - one.frequency))]) for f in flows]
-                equal = float(1 / (one.frequency ** (2 - self.order) * np.median(np.concatenate(near))))
-                found += [(one, share * equal) for share in (0.2, 0.6, 2.0)]
+            near = [abs(f.response[:, np.argmin(abs(f.batch.omega - one.frequency))]) for f in flows]
+            equal = float(1 / (one.frequency ** (2 - self.order) * np.median(np.concatenate(near))))
+            grown = [one, *one.growing(points, (0.4, 2.5))]
+            found += [(each, share * equal) for each in grown for share in (0.25, 1.0)]
         return found
 
+    def growing(self, points: FloatArray, ratios: tuple[float, ...]) -> list[Self]:
+        """Masses that grow over each scheduling variable that changes."""
+        variables = np.flatnonzero(np.ptp(points, axis=0) > 0)
+        return [replace(self, ratio=ratio, variable=int(s)) for s in variables for ratio in ratios]
+
     def fixed(self, parameter: FurtherParameter) -> bool:
-        """A mass that does not grow is left so by a refit."""
-        return parameter.name == "ratio" and self.ratio == 1.0
+        """A mass that does not grow, or has no friction, is left so by a refit."""
+        return (parameter.name == "ratio" and self.ratio == 1.0) or (parameter.name == "friction" and not self.friction)
+
+    def freer(self, points: FloatArray) -> list[Self]:
+        """With friction of the mass; growing."""
+        rubbing = [] if self.friction else [replace(self, friction=share * self.frequency) for share in (0.003, 0.03)]
+        return [*rubbing, *(self.growing(points, (1.3, 0.77)) if self.ratio == 1.0 else [])]
 
     def judgeable(self, flow: Flow) -> bool:
         """Only in continuous time."""
         return not flow.setting.structure.is_discrete
 
     def variants(self, flow: Flow) -> list[Self]:
-        """The grid of the further parameters; growing masses for each scheduling variable that changes."""
-        found = super().variants(flow)
-        still = [one for one in found if one.ratio == 1.0]
-        moved = [one for one in found if one.ratio != 1.0]
-        variables = np.flatnonzero(np.ptp(flow.setting.points, axis=0) > 0)
-        return [*still, *(replace(one, variable=int(s)) for one in moved for s in variables)]
+        """The grid of the frequencies, for every order of the output."""
+        grid = super().variants(flow)
+        orders = [order for order, of_input in motions(flow.batch.channels) if not of_input]
+        return [replace(one, order=order) for order in orders for one in grid]

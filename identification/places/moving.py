@@ -37,10 +37,9 @@ class Moving(Effect):
             moved.append(still.with_values(np.where(np.array(names) == self.moves, values * factor, values)))
         return moved
 
-
-def may_move(effect: Effect, points: FloatArray) -> list[Effect]:
-    """The effect with its parameter on the move, by a little and by much, up and down; none where it cannot move."""
-    if not isinstance(effect, Moving) or effect.ratio != 1.0:
-        return []
-    variables = np.flatnonzero(np.ptp(points, axis=0) > 0)
-    return [replace(effect, ratio=r, variable=int(s)) for s in variables for r in (1.2, 3.0, 1 / 3)]
+    def freer(self, points: FloatArray) -> list[Self]:
+        """With its parameter on the move, by a little and by much, up and down, where the points (M, s) differ."""
+        if self.ratio != 1.0:
+            return []
+        variables = np.flatnonzero(np.ptp(points, axis=0) > 0)
+        return [replace(self, ratio=r, variable=int(s)) for s in variables for r in (1.2, 3.0, 1 / 3)]

@@ -219,6 +219,10 @@ class Effect(ABC):
         grids = [[self.scaled(p, flow, value) for value in p.values] for p in self.parameters]
         return [dataclasses.replace(self, **dict(zip(names, values, strict=True))) for values in product(*grids)]
 
+    def freer(self, points: FloatArray) -> list[Self]:
+        """With one further parameter let go that was fixed, to be tried from where the effect was fitted."""
+        return []
+
     def scan(self, flows: Sequence[Flow]) -> list[tuple[Self, float]]:
         """Variants with amplitudes that are not small, to begin a refit with; none where small ones lead there."""
         return []

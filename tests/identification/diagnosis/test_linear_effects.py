@@ -111,11 +111,12 @@ def test_an_arc_whose_time_moves_with_p_is_followed():
     assert arc.time == pytest.approx(1.5 * np.sqrt(3), rel=0.05)
 
 
-def driven(p, order):
-    """Of 0.5 v₁′ + v₁ = u − f, m v₂′ = f, f = k (x₁ − x₂) + c (v₁ − v₂), m = 0.1 + 0.1 p: by its states."""
+def driven(p, order, friction=0.0):
+    """Of 0.5 v₁′ + v₁ = u − f, m v₂′ = f − friction v₂, f = k (x₁ − x₂) + c (v₁ − v₂), m = 0.1 + 0.1 p."""
     m, k, c = 0.1 + 0.1 * p, 8.0, 0.03
     rate = np.array([[0, 1, 0, 0], [-k, -c - 1, k, c], [0, 0, 0, 1], [k, c, -k, -c]], dtype=float)
     rate[1] /= 0.5
+    rate[3, 3] -= friction
     rate[3] /= m
     seen = {0: np.array([1.0, 0, 0, 0]), 1: np.array([0, 1.0, 0, 0])}[order]
 
@@ -126,13 +127,17 @@ def driven(p, order):
     return response
 
 
-def test_two_masses_are_one_equation_whatever_the_sign_conventions():
+@pytest.mark.parametrize("order", [0, 1])
+@pytest.mark.parametrize("friction", [0.0, 0.06])
+def test_two_masses_are_one_equation_for_a_speed_and_a_position(order, friction):
     """The response of the extended model at the true mass is that of the states, pole and zero moving with p."""
     rigid = model_of(RationalStructure(1, 0), (0, 0), [2.0, 2.0])
-    zero = np.sqrt(8.0 / 0.15)
-    effect = TwoMass(frequency=float(zero), damping=0.03 / 8 * zero / 2, ratio=2.0)
-    batch = responses(lambda p, s: driven(p, 1)(s), POINTS, noise=1e-6)[0]
-    answered = rigid.plus(placed(effect, 0, 1, 0.15)).output(batch)
+    if order == 0:
+        rigid = model_of(RationalStructure(2, 0), (0, 0, 0), [2.0, 0.0, 2.0])
+    zero = float(np.sqrt(8.0 / 0.15))
+    growing = TwoMass(frequency=zero, damping=0.03 / 8 * zero / 2, ratio=2.0, friction=friction / 0.15, order=order)
+    batch = responses(lambda p, s: driven(p, order, friction)(s), POINTS, noise=1e-6)[0]
+    answered = rigid.plus(placed(growing, 0, 1, 0.15)).output(batch)
     assert np.allclose(answered, batch.outputs, rtol=1e-4)
 
 
@@ -140,6 +145,7 @@ def test_a_second_mass_is_named():
     rigid = model_of(RationalStructure(1, 0), (0, 0), [2.0, 2.0])
     found = diagnose(rigid, responses(lambda p, s: driven(0.5, 1)(s), (0.5,), 5))
     assert named(found)[0] == "two_mass"
+    assert found.best.fit.model.effects[-1].effect.order == 1
     best = found.best.fit.model.effects[-1]
     assert best.coefficients[0, 0] == pytest.approx(0.15, rel=0.05)
     assert best.effect.frequency == pytest.approx(np.sqrt(8 / 0.15), rel=0.01)
