@@ -11,6 +11,7 @@ from app.services.job_events import JobEvents
 from app.services.readiness import Readiness
 from app.settings import Settings
 from app.store.arrays import ArrayStore
+from app.store.bin import Bin
 from app.store.database import Database
 from app.store.identifiers import new_identifier, observe
 from app.store.lock import locks_of
@@ -19,7 +20,7 @@ from app.store.resources import ResourceRepository
 
 
 class Container:
-    """The parts that routers and services use: `settings`, `resources`, `ledger`, `arrays`, `database`, `job_events`.
+    """What routers and services use: `settings`, `resources`, `bin`, `ledger`, `arrays`, `database`, `job_events`.
 
     Making one touches neither disk nor network; `start` does.
     """
@@ -31,6 +32,7 @@ class Container:
         self.database = Database(url)
         self.arrays = ArrayStore(settings.arrays_dir, settings.max_array_bytes, settings.disk_reserve_bytes)
         self.resources = ResourceRepository(self.database)
+        self.bin = Bin(self.database)
         self.hub = Hub()
         self._journal = Journal(self.database, self.hub, server)
         self._executor = LocalExecutor(self._journal, kinds, settings)

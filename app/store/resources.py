@@ -1,4 +1,4 @@
-"""The repository of everything that was made. Resources are only ever added, never changed."""
+"""The repository of everything that was made. Resources are added; only `app.store.bin` changes names and deletes."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -91,23 +91,25 @@ class ResourceRepository:
         """The resource, or None when there is none of this kind."""
         if not is_identifier(identifier):
             return None
-        query = select(ResourceRow).where(ResourceRow.id == identifier, ResourceRow.kind == kind)
+        query = select(ResourceRow).where(
+            ResourceRow.id == identifier, ResourceRow.kind == kind, ResourceRow.deleted_at.is_(None)
+        )
         with self._database.read() as session:
             row = session.scalars(query).one_or_none()
-        return None if row is None else _resource(row)
+        return None if row is None else resource_of(row)
 
     def list(
         self, kind: str, plant_id: str | None = None, limit: int = 50, cursor: str | None = None
     ) -> Page[Resource]:
         """A page of resources of one kind, newest first; raises UnprocessableError for a bad cursor."""
-        query = select(ResourceRow).where(ResourceRow.kind == kind)
+        query = select(ResourceRow).where(ResourceRow.kind == kind, ResourceRow.deleted_at.is_(None))
         if plant_id is not None:
             query = query.where(ResourceRow.plant_id == plant_id)
         if checked_cursor(cursor) is not None:
             query = query.where(ResourceRow.id < cursor)
         with self._database.read() as session:
             rows = session.scalars(query.order_by(ResourceRow.id.desc()).limit(limit + 1)).all()
-        return page([_resource(row) for row in rows], limit)
+        return page([resource_of(row) for row in rows], limit)
 
 
 def page(found: Sequence[Item], limit: int) -> Page[Item]:
@@ -117,5 +119,6 @@ def page(found: Sequence[Item], limit: int) -> Page[Item]:
     return Page(items, getattr(items[-1], "id") if more else None)  # noqa: B009
 
 
-def _resource(row: ResourceRow) -> Resource:
+def resource_of(row: ResourceRow) -> Resource:
+    """What a row holds."""
     return Resource(row.id, row.kind, row.plant_id, row.job_id, row.created_at, row.document, row.arrays)

@@ -93,6 +93,8 @@ class ResourceRow(Base):
     created_at: Mapped[datetime]
     document: Mapped[dict[str, Any]]
     arrays: Mapped[str | None] = mapped_column(String(64))
+    deleted_at: Mapped[datetime | None]
+    deleted_with: Mapped[str | None] = mapped_column(String(32))
 
     __table_args__ = (
         Index("ix_resources_kind_id", "kind", "id"),
