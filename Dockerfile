@@ -1,5 +1,5 @@
 # Build:  docker build -t lpv-oed .
-# Run:    docker run --init -p 127.0.0.1:8000:8000 -e LPV_OED_TOKEN=... -v lpv-oed-data:/data lpv-oed
+# Run:    docker run --init --read-only --tmpfs /tmp -p 127.0.0.1:8000:8000 -e LPV_OED_TOKEN=... -v lpv-oed-data:/data lpv-oed
 # A server that listens beyond loopback, as this one must, refuses to start without a token.
 
 FROM debian:bookworm-slim AS build
@@ -12,7 +12,7 @@ COPY pyproject.toml constraints.txt README.md LICENSE ./
 COPY identification identification
 COPY oed oed
 COPY app app
-RUN /opt/lpv-oed/bin/pip install --no-cache-dir --constraint constraints.txt . \
+RUN /opt/lpv-oed/bin/pip install --no-cache-dir --constraint constraints.txt '.[postgresql]' \
     && /opt/lpv-oed/bin/pip uninstall --yes pip setuptools
 
 FROM debian:bookworm-slim

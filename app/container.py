@@ -1,5 +1,7 @@
 """What the service is made of, wired together once."""
 
+from app.access.audit import Audit
+from app.access.tokens import Tokens
 from app.jobs.discovery import discover_kinds
 from app.jobs.executor import LocalExecutor
 from app.jobs.hub import Hub
@@ -17,6 +19,8 @@ from app.store.identifiers import new_identifier, observe
 from app.store.lock import locks_of
 from app.store.postgres import Listener
 from app.store.resources import ResourceRepository
+from app.store.room import free_bytes
+from app.telemetry.metrics import Gauge, Metrics
 
 
 class Container:
@@ -45,6 +49,9 @@ class Container:
         self._listener = Listener(url, self._heard)
         self._housekeeping = Housekeeping(self.database, settings.arrays_dir, settings.unused_days)
         self._locks = locks_of(url, settings.data_dir)
+        self.tokens = Tokens(self.database, settings.bearer_token)
+        self.audit = Audit(self.database)
+        self.metrics = Metrics(self._gauges())
         self._started = False
 
     def start(self) -> None:
@@ -87,6 +94,14 @@ class Container:
             self._listener.start()
         else:
             self._journal.recover(self.settings.job_attempts)
+
+    def _gauges(self) -> dict[str, Gauge]:
+        return {
+            "lpv_oed_jobs": ("Jobs by their state", "state", self.ledger.count),
+            "lpv_oed_event_streams": ("Open event streams", "", lambda: {"": self.job_events.streams}),
+            "lpv_oed_free_bytes": ("Room on the disk", "", lambda: {"": free_bytes(self.settings.data_dir)}),
+            "lpv_oed_ready": ("1 while work can be taken in", "", lambda: {"": not self.readiness.reasons()}),
+        }
 
     def _heard(self, job_id: str, event: str) -> None:
         """Something happened to a job, maybe on another server."""

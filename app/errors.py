@@ -110,6 +110,12 @@ class NoRoomError(ProblemError):
     status, slug, title = 507, "insufficient-storage", "Insufficient storage"
 
 
+class TooManyRequestsError(ProblemError):
+    """Too many wrong tokens came from one address."""
+
+    status, slug, title = 429, "too-many-requests", "Too many requests"
+
+
 class InternalError(ProblemError):
     """A fault of the service; the log has the cause, the answer has not."""
 

@@ -1,7 +1,6 @@
 """Guards in front of the routes: who is asking, from where, and how much is sent. Plain ASGI."""
 
 import asyncio
-import hmac
 import logging
 import time
 from urllib.parse import urlsplit
@@ -17,15 +16,12 @@ from app.errors import (
     ForbiddenError,
     ProblemError,
     TooSlowError,
-    UnauthorizedError,
 )
-from app.pages.security import is_page
 from app.problem_handlers import answer, answer_to_fault
 from app.settings import is_loopback
 from app.store.faults import fault_of
 
 logger = logging.getLogger(__name__)
-OPEN_PATHS = ("/v1/health", "/v1/readiness")
 SLOWEST_BYTES_PER_SECOND = 16 * 1024
 MOST_TAKEN_IN = 4 * 1024**3  # bytes of a refused body
 TOO_SLOW = "the body did not come in time; send it faster, or raise LPV_OED_REQUEST_SECONDS"
@@ -101,24 +97,6 @@ class LoopbackGuard(Guard):
         origin = headers.get("origin")
         if origin is not None and not is_loopback(_name(origin)):
             raise ForbiddenError(f"requests of the origin {origin!r} are not answered")
-
-
-class TokenGuard(Guard):
-    """Every request but those to OPEN_PATHS and for pages, which hold no data, must carry the bearer token."""
-
-    def __init__(self, app: ASGIApp, token: str) -> None:
-        super().__init__(app)
-        self._expected = token.encode()
-
-    def check(self, scope: Scope, headers: Headers) -> None:
-        if scope["path"] in OPEN_PATHS or is_page(scope["path"]):
-            return
-        scheme, _, given = headers.get("authorization", "").partition(" ")
-        if scheme.lower() != "bearer" or not hmac.compare_digest(given.strip().encode("latin-1"), self._expected):
-            raise UnauthorizedError(
-                "send the header Authorization: Bearer <token> with the token of this server",
-                headers={"WWW-Authenticate": "Bearer"},
-            )
 
 
 class BodyGuard(Guard):

@@ -1,5 +1,6 @@
 """The published OpenAPI document, in the shape that client generators understand."""
 
+import json
 from typing import Any
 
 from fastapi import FastAPI
@@ -20,7 +21,12 @@ DESCRIPTION = (
 )
 _METHODS = ("get", "put", "post", "delete", "patch")
 _ALWAYS = {400: "The request cannot be read", 401: "The bearer token is missing or wrong"}
-_ALWAYS |= {403: "This origin is not answered", 500: "A fault of the service", 503: "The database is out of reach"}
+_ALWAYS |= {429: "Too many wrong tokens came from this address"}
+_ALWAYS |= {
+    403: "The token does not allow this, or this origin is not answered",
+    500: "A fault of the service",
+    503: "The database is out of reach",
+}
 _WITH_BODY = {408: "The body did not come in time", 507: "The disk is full; nothing was kept"}
 _WITH_BODY |= {413: "The body is too large", 415: "The content type of the body is not the expected one"}
 
@@ -96,9 +102,29 @@ def _without_null(schema: Json) -> Json:
     return schema | (branches[0] if len(branches) == 1 else {"anyOf": branches})
 
 
+def _as_sent(schema: Json) -> None:
+    """Fields as they are sent: one that does not apply is absent, not null; one with a default may be left out.
+
+    Generators take a field with a default for one that is always there, so the default is told in words.
+    """
+    properties = schema["properties"]
+    for name, field in properties.items():
+        if "default" in field:
+            default = field.pop("default")
+            told = [field.get("description", ""), "" if default in (None, "", []) else f"default {json.dumps(default)}"]
+            field |= {"description": "; ".join(filter(None, told))} if any(told) else {}
+        if {"type": "null"} in field.get("anyOf", ()):
+            properties[name] = _without_null(field)
+            schema["required"] = [one for one in schema.get("required", ()) if one != name]
+    if not schema.get("required", True):
+        del schema["required"]
+
+
 def _polish(node: Any) -> None:
-    """Numbers are doubles; titles that only repeat a name go, and so do nulls that no parameter can carry."""
+    """Numbers are doubles; titles that only repeat a name go, and so do nulls that are never sent."""
     if isinstance(node, dict):
+        if isinstance(node.get("properties"), dict) and node.get("type") == "object":
+            _as_sent(node)
         if "in" in node and "anyOf" in node.get("schema", {}):
             node["schema"] = _without_null(node["schema"])
         if node.get("type") == "number":

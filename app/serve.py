@@ -19,6 +19,7 @@ from app.protocol import PatientProtocol
 from app.settings import Settings
 from app.store.faults import fault_of
 from app.store.lock import InUseError
+from app.telemetry.logs import set_up
 
 SECONDS_FOR_ANSWERS = 3
 SECONDS_TO_STOP = 9.0
@@ -69,6 +70,7 @@ def serve(opens: bool = False) -> None:
     """
     settings = settings_or_exit()
     require_free(settings.host, settings.port)
+    set_up(settings.log_format)
     application = create_app(settings)
     protocol: Any = partial(PatientProtocol, head_seconds=settings.request_seconds)
     config = uvicorn.Config(
@@ -77,6 +79,7 @@ def serve(opens: bool = False) -> None:
         port=settings.port,
         http=protocol,
         access_log=False,
+        log_config=None,
         timeout_graceful_shutdown=SECONDS_FOR_ANSWERS,
     )
     Server(config, application, opens).run()

@@ -9,6 +9,8 @@ from typing import Self
 from pydantic import Field, SecretStr, model_validator
 from pydantic_settings import BaseSettings, SettingsConfigDict
 
+from app.telemetry.logs import LogFormat
+
 MEBIBYTE = 1024 * 1024
 GIBIBYTE = 1024 * MEBIBYTE
 TOKEN = re.compile(r"[A-Za-z0-9._~+/=-]{16,}", re.ASCII)
@@ -48,6 +50,7 @@ class Settings(BaseSettings):
     lease_seconds: float = Field(
         default=20.0, gt=0, description="of several servers, one that is silent for so long is dead, and its jobs go on"
     )
+    log_format: LogFormat = Field(default="text", description="lines of the log: text, or json with one object each")
     unused_days: float = Field(
         default=7.0,
         ge=0.01,

@@ -156,7 +156,7 @@ class Study:
         per_job = Counter(resource["jobId"] for resource in made)
         acknowledged = set(self.acknowledged.values())
         succeeded = {identifier for identifier, job in jobs.items() if job["state"] == "succeeded"}
-        results = {job["result"]["id"] for job in jobs.values() if job["result"]}
+        results = {job["result"]["id"] for job in jobs.values() if "result" in job}
         return {
             "acknowledged": len(acknowledged),
             "succeeded": len(succeeded),
@@ -190,7 +190,7 @@ def _all(client: httpx.Client, collection: str) -> list[dict[str, Any]]:
         query = {"limit": "500"} | ({"cursor": cursor} if cursor else {})
         page = client.get(f"/v1/{collection}", params=query).raise_for_status().json()
         found += page["items"]
-        cursor = page["nextCursor"]
+        cursor = page.get("nextCursor")
         if cursor is None:
             return found
 

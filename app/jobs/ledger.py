@@ -1,10 +1,11 @@
 """The ledger of jobs as services see it: submit, look, watch, cancel. Every change is one transaction."""
 
+import logging
 from collections.abc import Collection, Sequence
 from datetime import UTC, datetime
-from typing import Any, Protocol
+from typing import Any, Protocol, get_args
 
-from sqlalchemy import select
+from sqlalchemy import func, select
 from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
@@ -16,6 +17,8 @@ from app.store.database import Database
 from app.store.identifiers import is_identifier, new_identifier
 from app.store.resources import Page, checked_cursor, page
 from app.store.rows import JobEventRow, JobRow
+
+logger = logging.getLogger(__name__)
 
 
 class Dispatcher(Protocol):
@@ -72,6 +75,7 @@ class Ledger:
             created_at=datetime.now(UTC),
         )
         record = self._insert_once(row)
+        logger.info("job %s (%s) is %s", record.id, record.kind, record.state)
         self._dispatcher.wake()
         return record
 
@@ -107,6 +111,13 @@ class Ledger:
         with self._database.read() as session:
             rows = session.scalars(query.order_by(JobRow.id.desc()).limit(limit + 1)).all()
             return page([record_of(row) for row in rows], limit)
+
+    def count(self) -> dict[str, float]:
+        """How many jobs are in each state that one can be in."""
+        query = select(JobRow.state, func.count()).group_by(JobRow.state)
+        with self._database.read() as session:
+            found = {str(state): float(count) for state, count in session.execute(query)}
+        return dict.fromkeys(get_args(JobState.__value__), 0.0) | found
 
     def events(self, job_id: str, after: int = 0, limit: int = 500) -> Sequence[JobEventRecord]:
         """What happened to a job after the event `after`, oldest first."""

@@ -12,6 +12,7 @@ from app.jobs.records import ClaimedJob
 from app.settings import Settings
 from app.store.faults import fault_of
 from app.store.room import Room
+from app.telemetry.logs import about
 
 logger = logging.getLogger(__name__)
 SECONDS_BETWEEN_LOOKS = 2.0
@@ -74,7 +75,8 @@ class Slot:
             return False
         self._present = (job.id, job.attempt)
         try:
-            self._record(job, self._run(job))
+            with about(jobId=job.id):
+                self._record(job, self._run(job))
         finally:
             self._present = None
         return True

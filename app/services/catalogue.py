@@ -1,6 +1,7 @@
 """The catalogue: what discovery found, with the schemas of its options."""
 
 import json
+from functools import cache
 from typing import Any, Literal
 
 from app import __version__
@@ -13,6 +14,7 @@ from identification.places.place import Effect
 SIGNS: dict[int, Literal["any", "positive", "negative"]] = {0: "any", 1: "positive", -1: "negative"}
 
 
+@cache
 def catalogue() -> Catalogue:
     """Everything that requests can choose from."""
     entries = {

@@ -129,5 +129,5 @@ class JobEvents:
 
 
 def _sent(event: JobEventRecord) -> bytes:
-    data = JobEvent.of(event).model_dump_json(by_alias=True)
+    data = JobEvent.of(event).model_dump_json(by_alias=True, exclude_none=True)
     return f"id: {event.seq}\r\nevent: {event.name}\r\ndata: {data}\r\n\r\n".encode()

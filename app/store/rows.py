@@ -81,6 +81,34 @@ class JobEventRow(Base):
     __table_args__ = (Index("ix_job_events_job_id_seq", "job_id", "seq"), {"sqlite_autoincrement": True})
 
 
+class TokenRow(Base):
+    """Who may ask; of the token itself only its SHA-256 is kept, which nobody can turn back into it."""
+
+    __tablename__ = "tokens"
+
+    id: Mapped[str] = mapped_column(String(32), primary_key=True)
+    name: Mapped[str] = mapped_column(String(100))
+    scope: Mapped[str] = mapped_column(String(16))
+    digest: Mapped[str] = mapped_column(String(64), unique=True)
+    created_at: Mapped[datetime]
+    expires_at: Mapped[datetime | None]
+    revoked_at: Mapped[datetime | None]
+
+
+class AuditRow(Base):
+    """Who asked to make, change or end what, and what came of it."""
+
+    __tablename__ = "audit"
+
+    id: Mapped[str] = mapped_column(String(32), primary_key=True)
+    at: Mapped[datetime]
+    who: Mapped[str] = mapped_column(String(100))
+    method: Mapped[str] = mapped_column(String(16))
+    path: Mapped[str] = mapped_column(Text)
+    status: Mapped[int] = mapped_column(Integer)
+    request_id: Mapped[str] = mapped_column(String(64))
+
+
 class ResourceRow(Base):
     """Everything that was made: plants, experiments, models, designs, signals. New kinds need no migration."""
 

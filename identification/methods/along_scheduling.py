@@ -3,6 +3,8 @@
 from dataclasses import dataclass, replace
 from typing import ClassVar, cast
 
+import numpy as np
+
 from identification.affine_estimate import AffineEstimate
 from identification.bases.polynomial import Polynomial
 from identification.estimates import Estimate
@@ -46,7 +48,10 @@ class AlongScheduling(Method):
             found = PeriodicLikelihood().estimate(record, task.structure.order, progress=progress)
         else:
             found = CorrelationRealisation(refinement=True).estimate(record, task.structure.order, progress=progress)
-        return Estimate(affine_model(found), found.outcome, found.tests)
+        model = affine_model(found)
+        if found.covariance is None:
+            model = replace(model, covariance=np.full_like(model.covariance, np.inf))
+        return Estimate(model, found.outcome, found.tests)
 
 
 def _record(task: Task) -> VaryingRecord:

@@ -57,7 +57,7 @@ def test_the_comparison_shows_the_failure(comparison: Json, fitted: list[str], h
         assert part["noiseKnown"]
         assert part["lackOfFit"]["pValue"] < 1e-9
         assert part["lackOfFit"]["statistic"] > 1.5 * part["lackOfFit"]["degreesOfFreedom"]
-        assert all(test["pValue"] is not None for test in part["byLineClass"])
+        assert all("pValue" in test for test in part["byLineClass"])
         bands = part["byBand"]
         assert len(bands) >= 7
         assert all(a["maximumRadPerSecond"] == b["minimumRadPerSecond"] for a, b in pairwise(bands))

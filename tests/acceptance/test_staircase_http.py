@@ -28,7 +28,7 @@ def test_it_ends_at_the_noise_with_the_right_effect(model: Json, staircase: Json
     assert staircase["conclusion"] == "explained"
     steps = staircase["steps"]
     assert steps[0]["modelId"] == model["id"] == staircase["modelId"]
-    assert [step["added"] for step in steps[:2]] == [None, "dead_zone"]
+    assert [step.get("added") for step in steps[:2]] == [None, "dead_zone"]
     errors = np.array([[step["fitted"], step["heldOut"]] for step in steps])
     assert np.all(np.diff(errors[:, 1]) <= 0)
     assert errors[1, 1] < 0.3 * errors[0, 1]

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from app.files import mat_writer
-from identification.models.state_space_model import stacks
 from tests.support import paper, responses
 from tests.support.api import Api, Json, pointers
 
@@ -103,15 +102,15 @@ def test_noise_free_responses_give_the_plant_itself(api: Api, plant: Json, exact
     model = identified(api, plant, exact, parametricEstimator={**PARAMETRIC, "weighting": "none"})
     found = model["stateSpace"]
     truth = responses.true_plant()
-    for name, matrices in zip("ABCD", stacks(truth), strict=True):
-        assert np.allclose(found["matrices"][f"matrix{name}"], matrices, atol=1e-9), name
+    for name in "abcd":
+        assert np.allclose(found["matrices"][f"matrix{name.upper()}"], getattr(truth, name), atol=1e-9), name
     assert found["chosenRows"]["counts"] == [2, 1]
     assert 0 < found["chosenRows"]["worstSingularValue"] <= 1
     assert [error["experimentId"] for error in found["errors"]] == exact
     assert max(error["maxError"] for error in found["errors"]) < 1e-9
     assert all(values["values"][3] < 1e-9 * values["values"][2] for values in found["singularValues"])
     assert (found["order"], found["inputCount"], found["outputCount"], found["sampleTimeSeconds"]) == (3, 2, 2, 1.0)
-    assert (model["stable"], model["outcome"]["status"], model["covariance"]) == (True, "converged", None)
+    assert (model["stable"], model["outcome"]["status"], model.get("covariance")) == (True, "converged", None)
     assert np.array(model["theta"]).shape == (len(model["parameterNames"]),)
     assert dict(zip(model["parameterNames"], model["theta"], strict=True))["A[1](3,2)"] == pytest.approx(0.03)
     poles = {one["operatingPoint"][0]: np.sort(responses.complex_array(one["poles"])) for one in model["poles"]}
@@ -127,8 +126,8 @@ def test_each_channel_has_its_frequency_response(
     truth = responses.true_plant().frequency_response([[1.7]], omega)[0, :, output - 1, input - 1]
     assert np.allclose(found, truth, atol=1e-9)
     assert (document["outputNumber"], document["inputNumber"]) == (output, input)
-    assert document["magnitudeLower95"] is None
-    assert document["realVariance"] is None
+    assert "magnitudeLower95" not in document
+    assert "realVariance" not in document
 
 
 def test_pole_regions_are_guaranteed_over_the_whole_range(api: Api, plant: Json, noisy: list[str]) -> None:
@@ -186,7 +185,9 @@ def test_the_order_is_chosen_at_an_operating_point(api: Api, plant: Json, noisy:
     assert local[0]["singularValues"][2] > 5 * local[0]["singularValues"][3]
     assert local[0]["rmsError"] == pytest.approx(0.02, rel=0.3)
     assert local[0]["maxError"] > local[0]["rmsError"]
-    assert (model["theta"], model["stateSpace"]["matrices"], model["noiseVariance"]) == ([], None, None)
+    assert model["theta"] == []
+    assert "matrices" not in model["stateSpace"]
+    assert "noiseVariance" not in model
     omega, found, _ = response_of(api, model, responses.POINTS[1], inputNumber=2)
     truth = responses.true_plant().frequency_response([[responses.POINTS[1]]], omega)[0, :, 0, 1]
     assert np.linalg.norm(found - truth) < 0.02 * np.linalg.norm(truth)

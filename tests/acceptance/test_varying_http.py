@@ -41,7 +41,7 @@ def identified(api: Api, plant: Json, records: list[str], estimator: Json, **mor
 
 def test_what_was_understood_of_a_record_is_said(api: Api, records: list[str]) -> None:
     experiment = api.get(f"/experiments/{records[0]}")
-    assert (experiment["kind"], experiment["operatingPoint"]) == ("varyingRecord", None)
+    assert (experiment["kind"], experiment.get("operatingPoint")) == ("varyingRecord", None)
     understood = experiment["understood"]
     assert (understood["periodSamples"], understood["periodDetected"]) == (varying.PERIOD, True)
     seen = understood["varying"]
@@ -119,7 +119,8 @@ def test_its_frozen_response_has_a_band_that_holds(api: Api, model: Json) -> Non
 def test_any_estimator_may_start_the_likelihood(api: Api, plant: Json, records: list[str], model: Json) -> None:
     moesp = {"kind": "periodic_moesp", "varyingOutput": False}
     alone = identified(api, plant, records, moesp)
-    assert (alone["covariance"], alone["varying"]["fits"][1]["outputDeviations"]) == (None, None)
+    assert "covariance" not in alone
+    assert "outputDeviations" not in alone["varying"]["fits"][1]
     assert alone["varying"]["eigenvalues"][0]["realVariances"] == [None, None]
     for estimator in (moesp, {"kind": "correlation_realisation", "refinement": False}):
         refined = identified(api, plant, records, estimator, refinement=LIKELIHOOD)
@@ -128,7 +129,7 @@ def test_any_estimator_may_start_the_likelihood(api: Api, plant: Json, records: 
             np.sort_complex(complex_array(one["varying"]["eigenvalues"][0]["eigenvalues"])) for one in (refined, model)
         )
         assert np.allclose(found, expected, atol=1e-4)
-        assert refined["covariance"] is not None
+        assert "covariance" in refined
 
 
 @pytest.fixture(scope="module")
@@ -141,14 +142,14 @@ def cox(api: Api) -> tuple[Json, list[str]]:
 def test_white_excitation_gives_a_model_with_several_inputs_and_outputs(api: Api, cox: tuple[Json, list[str]]) -> None:
     plant, records = cox
     experiment = api.get(f"/experiments/{records[0]}")
-    assert experiment["understood"]["periodSamples"] is None
+    assert "periodSamples" not in experiment["understood"]
     assert not experiment["understood"]["varying"]["synchronised"]
     assert "does not repeat itself" in experiment["understood"]["varying"]["reason"]
     free = {**varying.TURBINE["structure"], "order": None}
     found = identified(api, plant, records, {"kind": "correlation_realisation"}, structure=free)
     assert found["outcome"]["status"] == "converged"
     assert "order 2 was chosen" in found["outcome"]["advice"]
-    assert (found["structure"]["order"], found["varying"]["warnings"], found["varying"]["steady"]) == (2, [], None)
+    assert (found["structure"]["order"], found["varying"]["warnings"], found["varying"].get("steady")) == (2, [], None)
     assert found["varying"]["noiseSpectrum"]["source"] == "residuals"
     assert np.allclose(np.diag(found["varying"]["noiseSpectrum"]["covariance"]), 0.02**2, rtol=0.15)
     assert all(fit["vafPercent"] > 99.9 for fit in found["varying"]["fits"])
@@ -172,7 +173,7 @@ def test_what_was_kept_of_several_variables_is_the_model_again(api: Api, cox: tu
     assert [one["vafPercent"] > 99.9 for one in found["experiments"]] == [True, True]
     for part in found["parts"]:
         assert part["noiseKnown"]
-        assert part["lackOfFit"] is None
+        assert "lackOfFit" not in part
         assert all(test["pValue"] > 1e-3 for test in part["simulationErrors"]), part
     maps = api.get(f"/comparisons/{found['id']}/maps")
     assert (

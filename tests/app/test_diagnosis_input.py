@@ -256,7 +256,7 @@ def test_a_response_says_which_effects_it_cannot_hold(bench: Bench, plant: str) 
     query = {"operatingPoint": 0.0, "minimumRadPerSecond": 1.0, "maximumRadPerSecond": 2.0}
     found = bench.client.get(f"/v1/models/{model}/frequency-response", params=query).json()
     assert found["leftOutEffects"] == ["cubic_stiffness"]
-    assert found["magnitudeLower95"] is None
+    assert "magnitudeLower95" not in found
 
 
 def test_the_catalogue_has_every_effect_with_its_unit_and_source(client: TestClient) -> None:

@@ -56,7 +56,7 @@ def test_the_plant_comes_back_as_typed_documents(call: Caller, plant: Any) -> No
     found = call("plants", "get_plant", plant.id)
     assert isinstance(found.structure, call.m.DiscreteStateSpaceStructure)
     assert [signal.name for signal in found.outputs] == ["level", "flow"]
-    assert found.input_ is None
+    assert not found.input_
 
 
 def test_a_model_with_a_pole_region_comes_back_as_typed_documents(
@@ -78,7 +78,7 @@ def test_a_model_with_a_pole_region_comes_back_as_typed_documents(
     assert found.pole_guarantee.guaranteed == "wholeRange"
     assert np.array(found.matrices.matrix_a).shape == (2, 3, 3)
     assert [local.order for local in found.local_models] == [3] * len(experiments)
-    assert model.noise_variance is None
+    assert not model.noise_variance
     band = {"minimum_rad_per_second": 0.1, "maximum_rad_per_second": 3.0, "count": 20}
     response = call("models", "get_model_frequency_response", model.id, operating_point=[1.0], input_number=2, **band)
     truth = responses.true_plant().frequency_response([[1.0]], response.frequencies_rad_per_second)[0, :, 0, 1]

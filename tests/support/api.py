@@ -14,8 +14,8 @@ class JobFailedError(AssertionError):
     """A job did not succeed; `problem` says why."""
 
     def __init__(self, job: Json) -> None:
-        super().__init__(f"the job {job['kind']} {job['state']}: {job['problem']}")
-        self.problem: Json = job["problem"]
+        super().__init__(f"the job {job['kind']} {job['state']}: {job.get('problem')}")
+        self.problem: Json = job.get("problem", {})
 
 
 @dataclass

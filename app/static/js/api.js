@@ -77,7 +77,7 @@ export async function request(path, { repeat = false, headers = {}, ...options }
 
 function search(query) {
   const pairs = Object.entries(query).flatMap(([name, value]) => [value].flat().map((one) => [name, one]));
-  const given = pairs.filter(([, value]) => value !== null && value !== undefined);
+  const given = pairs.filter(([, value]) => value != null);
   return given.length ? `?${new URLSearchParams(given)}` : "";
 }
 

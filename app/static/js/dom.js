@@ -8,7 +8,7 @@ export function h(tag, attributes = {}, ...children) {
     if (typeof value === "function") element.addEventListener(name.slice(2), value);
     else if (name === "value") element.value = value ?? "";
     else if (value === true) element.setAttribute(name, "");
-    else if (value !== false && value !== null && value !== undefined) element.setAttribute(name, value);
+    else if (value !== false && value != null) element.setAttribute(name, value);
   }
   append(element, children);
   return element;
@@ -16,7 +16,7 @@ export function h(tag, attributes = {}, ...children) {
 
 export function append(element, children) {
   for (const child of [children].flat(Infinity)) {
-    if (child !== null && child !== undefined && child !== false) element.append(child);
+    if (child != null && child !== false) element.append(child);
   }
 }
 

@@ -34,7 +34,7 @@ export function checkbox(checked = false, attributes = {}) {
 // choices: [[value, label], …]
 export function select(choices, chosen = null, attributes = {}) {
   const element = h("select", attributes, choices.map(([value, label]) => h("option", { value }, label)));
-  if (chosen !== null) element.value = chosen;
+  if (chosen != null) element.value = chosen;
   return element;
 }
 

@@ -5,7 +5,7 @@ const SUPERSCRIPTS = { "-": "⁻", 0: "⁰", 1: "¹", 2: "²", 3: "³", 4: "⁴"
 
 // A number to so many significant digits, without an exponent between 10⁻⁴ and 10⁶.
 export function significant(value, digits = 3) {
-  if (value === null || value === undefined || !Number.isFinite(value)) return UNKNOWN;
+  if (value == null || !Number.isFinite(value)) return UNKNOWN;
   if (value === 0) return "0";
   const [mantissa, exponent] = value.toExponential(digits - 1).split("e");
   const magnitude = Number(exponent);
@@ -24,7 +24,7 @@ const named = (unit) => Boolean(unit) && unit !== "1";
 
 // A number that was stated, with the digits that it was stated with; with its unit.
 export function exact(value, unit = "") {
-  if (value === null || value === undefined) return UNKNOWN;
+  if (value == null) return UNKNOWN;
   const text = /e/.test(String(Number(value.toPrecision(6)))) ? significant(value, 4) : String(Number(value.toPrecision(6)));
   return `${text.replace("-", "−")}${named(unit) ? `\u00a0${unit}` : ""}`;
 }
@@ -47,11 +47,11 @@ export function estimate(value, deviation, unit = "") {
 
 // A share as a percentage.
 export function percent(share, digits = 3) {
-  return share === null || share === undefined ? UNKNOWN : `${significant(100 * share, digits)} %`;
+  return share == null ? UNKNOWN : `${significant(100 * share, digits)} %`;
 }
 
 export function probability(p) {
-  if (p === null || p === undefined) return UNKNOWN;
+  if (p == null) return UNKNOWN;
   return p < 1e-4 ? "below 0.0001" : significant(p, 2);
 }
 
@@ -64,7 +64,7 @@ export function pointLabel(point, variables) {
 }
 
 export function duration(seconds) {
-  if (seconds === null || seconds === undefined) return UNKNOWN;
+  if (seconds == null) return UNKNOWN;
   if (seconds < 120) return quantity(seconds, "s");
   return seconds < 7200 ? quantity(seconds / 60, "min") : quantity(seconds / 3600, "h");
 }

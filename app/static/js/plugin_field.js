@@ -7,7 +7,7 @@ import { checkbox, field, fields, integerInput, numberInput, numberOf, numbersOf
 // Returns {element, value()}; value() is the document of the choice, or null for none.
 export function pluginField(label, entries, { pointer, kind = null, values = {}, none = null, onChange = () => {} } = {}) {
   const choices = entries.map((entry) => [entry.kind, words(entry.kind)]);
-  const chooser = select(none === null ? choices : [["", none], ...choices], kind ?? (none === null ? entries[0].kind : ""));
+  const chooser = select(none == null ? choices : [["", none], ...choices], kind ?? (none == null ? entries[0].kind : ""));
   const hint = h("p", { class: "hint wide" });
   const place = h("div", {});
   let readers = [];
@@ -35,7 +35,7 @@ function optionField({ name, description, required, valueSchema }, pointer, give
   if (!made) return null;
   const [input, read] = made;
   const element = field(words(name), input, { hint: withoutSources(description), pointer: `${pointer}/${name}` });
-  return { element, required, read: () => (read() === null && !required ? [] : [[name, read()]]) };
+  return { element, required, read: () => (read() == null && !required ? [] : [[name, read()]]) };
 }
 
 function inputFor(schema, start) {

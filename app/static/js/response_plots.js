@@ -58,7 +58,7 @@ function unwrapped({ re, im }) {
   let before = null;
   return re.map((real, i) => {
     const angle = (180 / Math.PI) * Math.atan2(im[i], real);
-    if (before !== null && Math.abs(angle - before) > 180) turns += angle < before ? 1 : -1;
+    if (before != null && Math.abs(angle - before) > 180) turns += angle < before ? 1 : -1;
     before = angle;
     return angle + 360 * turns;
   });

@@ -21,7 +21,7 @@ page(async () => {
   const model = await get(`/models/${design.modelId}`);
   byId("title").textContent = design.request.name || "Design";
   replace(byId("summary"), summary(described, design, model));
-  if (design.totalEnergy === null) return;
+  if (design.totalEnergy == null) return;
   append(byId("where"), [h("h2", {}, "Operating points and spectra")]);
   drawEnergies(byId("where"), described, design);
   drawSpectra(byId("where"), described, design);
@@ -37,7 +37,7 @@ function summary(described, design, model) {
   const asked = h("ul", {}, design.request.targets.map((target) => h("li", {}, targetText(target, described))));
   const known = h("a", { href: `/plants/${described.id}/models/${design.modelId}` }, model.name || `${model.origin} model`);
   const from = h("p", { class: "hint" }, `Made ${moment(design.createdAt)} from what was known by the model `, known, design.request.usePriorInformation ? ", whose accuracy is counted in." : ".");
-  if (design.totalEnergy === null) {
+  if (design.totalEnergy == null) {
     return [message("problem", h("p", {}, h("strong", {}, "No experiments within these limits reach the accuracy asked for.")), design.outcome.advice), h("h2", {}, "Asked for"), asked, from];
   }
   return [

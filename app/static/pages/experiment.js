@@ -35,10 +35,10 @@ function drawOther(place, described, data) {
 function about(experiment, described) {
   const { understood: seen } = experiment;
   const unit = (described.output ?? described.outputs[0]).unit;
-  const inHertz = (value) => (value === null ? null : quantity(hertz(value), "Hz"));
-  const band = seen.minimumFrequencyRadPerSecond === null ? null : `${inHertz(seen.minimumFrequencyRadPerSecond)} to ${inHertz(seen.maximumFrequencyRadPerSecond)}`;
+  const inHertz = (value) => (value == null ? null : quantity(hertz(value), "Hz"));
+  const band = seen.minimumFrequencyRadPerSecond == null ? null : `${inHertz(seen.minimumFrequencyRadPerSecond)} to ${inHertz(seen.maximumFrequencyRadPerSecond)}`;
   const point = experiment.operatingPoint ? pointLabel(experiment.operatingPoint, described.schedulingVariables) : "varies";
-  const record = seen.samples !== null;
+  const record = seen.samples != null;
   return [
     facts([point, "operating point"],
       record && [`${counted(seen.samples, "sample")}, ${duration(seen.durationSeconds)}`, `every ${exact(experiment.sampleTimeSeconds, "s")}`],
@@ -46,8 +46,8 @@ function about(experiment, described) {
       [String(seen.frequencyCount), record ? "excited lines" : "frequencies"],
       band && [band, "band"],
       record && [quantity(seen.noiseLevel, unit, 2), "noise level (standard deviation of the output)"],
-      seen.signalToNoiseDecibel !== null && [quantity(seen.signalToNoiseDecibel, "dB"), "signal to noise"],
-      seen.relativeDeviation !== null && [percent(seen.relativeDeviation, 2), "median deviation of the response"],
+      seen.signalToNoiseDecibel != null && [quantity(seen.signalToNoiseDecibel, "dB"), "signal to noise"],
+      seen.relativeDeviation != null && [percent(seen.relativeDeviation, 2), "median deviation of the response"],
       seen.saturatedFraction ? [percent(seen.saturatedFraction, 2), "of the output at its extremes"] : null),
     seen.warnings.map((text) => message("warning", text)),
     (experiment.loggedQuantities ?? []).length ? h("p", {}, "Logged: ", experiment.loggedQuantities.map((one) => `${one.name} = ${quantity(one.value, one.unit)}`).join(", ")) : null,
@@ -58,14 +58,14 @@ function about(experiment, described) {
 }
 
 function periods(seen) {
-  if (seen.periodSamples === null) return "none";
+  if (seen.periodSamples == null) return "none";
   const transient = seen.transientPeriods ? `, the first ${seen.transientPeriods} not steady` : "";
   return `${seen.periods} × ${seen.periodSamples} samples${transient}`;
 }
 
 function offsets(seen, described) {
-  if (seen.inputOffset === null || !described.input) return "";
+  if (seen.inputOffset == null || !described.input) return "";
   const mean = (value, unit) => quantity(Math.abs(value) < 1e-12 ? 0 : value, unit);
   return `; mean input ${mean(seen.inputOffset, described.input.unit)}, mean output ${mean(seen.outputOffset, described.output.unit)}`
-    + (seen.outputTrend === null ? "" : `, drift ${significant(seen.outputTrend)}`);
+    + (seen.outputTrend == null ? "" : `, drift ${significant(seen.outputTrend)}`);
 }

@@ -66,7 +66,7 @@ function drawVersions(line, steps, ends) {
   const step = (model) => steps.find((one) => one.model === model);
   const rows = [...line].map((model, i) => [
     h("a", { href: at(`models/${model.id}`) }, `${i + 1}. ${titleOf(model)}`),
-    step(model) ? percent(step(model).fitted) : "–", step(model) && step(model).heldOut !== null ? percent(step(model).heldOut) : "–",
+    step(model) ? percent(step(model).fitted) : "–", step(model) && step(model).heldOut != null ? percent(step(model).heldOut) : "–",
     h("a", { href: at(`compare?model=${model.id}`) }, "Go on from here"), effectsText(model), moment(model.createdAt),
   ]);
   const chooser = select(ends.map((one) => [one.id, datedTitle(one)]), line.at(-1).id);

@@ -28,7 +28,7 @@ def test_success_keeps_one_resource_and_its_arrays(bench: Bench) -> None:
     document = bench.wait(job)
     assert document["state"] == "succeeded"
     assert document["progress"] == {"fraction": 1.0, "message": "done"}
-    assert document["problem"] is None
+    assert "problem" not in document
     assert document["attempts"] == 1
     assert document["createdAt"] <= document["startedAt"] <= document["finishedAt"]
     assert document["result"] == {"kind": "trials", "id": job.resource_id, "href": f"/v1/trials/{job.resource_id}"}
@@ -41,7 +41,7 @@ def test_success_keeps_one_resource_and_its_arrays(bench: Bench) -> None:
 def test_misuse_is_a_422_that_names_the_field(bench: Bench) -> None:
     document = bench.run(end="misuse")
     assert document["state"] == "failed"
-    assert document["result"] is None
+    assert "result" not in document
     assert document["problem"]["status"] == 422
     assert document["problem"]["detail"] == "give more operating points"
     assert document["problem"]["errors"][0]["pointer"] == "/operatingPoints"
@@ -148,7 +148,7 @@ def test_cancelling_a_queued_job_keeps_it_from_starting(bench: Bench, tmp_path: 
     for job in busy:
         assert bench.wait(job)["state"] == "succeeded"
     document = bench.wait(queued)
-    assert (document["state"], document["attempts"], document["startedAt"]) == ("cancelled", 0, None)
+    assert (document["state"], document["attempts"], document.get("startedAt")) == ("cancelled", 0, None)
     names = [event.name for event in bench.container.ledger.events(queued.id)]
     assert names == ["queued", "cancelled"]
 

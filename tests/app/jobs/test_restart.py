@@ -100,4 +100,4 @@ def test_at_the_least_memory_limit_jobs_end(tmp_path: Path, end: str) -> None:
     if end == "hoard":
         assert document["problem"]["type"] == "urn:lpv-oed:problem:memory-limit"
     else:
-        assert document["state"] == "succeeded", document["problem"]
+        assert document["state"] == "succeeded", document.get("problem")

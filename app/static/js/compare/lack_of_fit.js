@@ -13,12 +13,12 @@ const MOST_LABELS = 12;
 
 // χ² per degree of freedom; null where nothing is known.
 export function ratio(test) {
-  return test && test.statistic !== null && test.degreesOfFreedom > 0 ? test.statistic / test.degreesOfFreedom : null;
+  return test && test.statistic != null && test.degreesOfFreedom > 0 ? test.statistic / test.degreesOfFreedom : null;
 }
 
 // The plots of all places that there are tests of.
 export function misfitPlots(place, parts, variables) {
-  const bandLabel = (band) => (band.maximumRadPerSecond === null ? `above ${significant(hertz(band.minimumRadPerSecond), 2)}`
+  const bandLabel = (band) => (band.maximumRadPerSecond == null ? `above ${significant(hertz(band.minimumRadPerSecond), 2)}`
     : `${significant(hertz(band.minimumRadPerSecond), 2)} to ${significant(hertz(band.maximumRadPerSecond), 2)}`);
   const points = [...new Map(parts.flatMap((part) => part.byPoint).map((one) => [JSON.stringify(one.operatingPoint), one.operatingPoint])).values()];
   points.sort((a, b) => a[0] - b[0]);
@@ -35,7 +35,7 @@ export function misfitPlots(place, parts, variables) {
 }
 
 function misfitPlot(place, parts, { where, title, testsOf, order }) {
-  const given = parts.map((part) => [part, testsOf(part).filter(([, test]) => ratio(test) !== null)]);
+  const given = parts.map((part) => [part, testsOf(part).filter(([, test]) => ratio(test) != null)]);
   const categories = order ?? [...new Set(given.flatMap(([, tests]) => tests.map(([label]) => label)))];
   return plot(place, {
     caption: `Misfit in ${where}: χ² per degree of freedom, 1 where only noise is left. Grey: 95 % of what noise alone gives.`,
@@ -92,10 +92,10 @@ export function disturbanceTable(parts, titles, output) {
 
 // The smallest of several p-values, held against having looked so often.
 function strongest(tests) {
-  const known = tests.filter((test) => test.pValue !== null);
+  const known = tests.filter((test) => test.pValue != null);
   if (!known.length) return null;
   const least = known.reduce((a, b) => (a.pValue < b.pValue ? a : b));
   return { ...least, pValue: Math.min(1, least.pValue * known.length) };
 }
 
-const answer = (test) => (test.pValue === null ? "not known" : test.pValue < 1e-3 ? "yes" : test.pValue < DOUBTFUL ? "perhaps" : "no sign of it");
+const answer = (test) => (test.pValue == null ? "not known" : test.pValue < 1e-3 ? "yes" : test.pValue < DOUBTFUL ? "perhaps" : "no sign of it");

@@ -8,7 +8,7 @@ const nameOf = (part) => (part.scheduling === "varying" ? `${NAMES[part.data]} a
 
 // {kind of message, text}
 export function comparisonVerdict(parts) {
-  const tests = parts.filter((part) => part.lackOfFit && part.lackOfFit.pValue !== null);
+  const tests = parts.filter((part) => part.lackOfFit && part.lackOfFit.pValue != null);
   if (!tests.length) return { kind: "warning", text: "Whether anything is missing cannot be said, because the size of the noise is not known." };
   const failing = tests.filter((part) => part.lackOfFit.pValue < DOUBTFUL);
   const detail = tests.map((part) => `${nameOf(part)}: ${significant(ratio(part.lackOfFit))} (p-value ${probability(part.lackOfFit.pValue)})`).join("; ");

@@ -13,7 +13,7 @@ export function drawAccuracy(place, design, model) {
   const before = of(model.standardDeviations);
   const asked = of(askedFor(design, model.parameterNames.length));
   const theta = of(model.theta);
-  const series = [["asked for", asked, "line-ew-open"], ["before", before, "circle-open"], ["after", after, "circle"]].filter(([, values]) => values?.some((one) => one !== null));
+  const series = [["asked for", asked, "line-ew-open"], ["before", before, "circle-open"], ["after", after, "circle"]].filter(([, values]) => values?.some((one) => one != null));
   const caption = before ? `Standard deviations of the parameters, before and after the experiments${design.request.usePriorInformation ? "" : " alone, what was known before not counted in"}.` : "Standard deviations of the parameters after the experiments; nothing is known of them before.";
   return plot(place, {
     caption, height: 300,
@@ -22,7 +22,7 @@ export function drawAccuracy(place, design, model) {
       layout: { xaxis: axis("", { type: "category" }), yaxis: axis("standard deviation", { log: true }), showlegend: true },
     }),
     table: () => ({ columns: ["parameter", "value", ...series.map(([name]) => name)],
-      rows: names.map((name, i) => [name, significant(theta[i], 4), ...series.map(([, values]) => (values[i] === null ? "–" : significant(values[i])))]) }),
+      rows: names.map((name, i) => [name, significant(theta[i], 4), ...series.map(([, values]) => (values[i] == null ? "–" : significant(values[i])))]) }),
   });
 }
 
@@ -31,7 +31,7 @@ function askedFor(design, count) {
   const lists = design.request.targets.filter((one) => one.kind === "parameter_deviation").map((one) => one.standardDeviations);
   if (!lists.length) return null;
   return Array.from({ length: count }, (_, i) => {
-    const values = lists.map((each) => each[i]).filter((one) => one !== null && one !== undefined);
+    const values = lists.map((each) => each[i]).filter((one) => one != null);
     return values.length ? Math.min(...values) : null;
   });
 }

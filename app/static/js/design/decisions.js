@@ -9,7 +9,7 @@ export function drawDecisions(place, { decisions }) {
   if (!decisions?.length) return;
   const rows = decisions.map((one) => [
     one.question === "detection" ? `is ${words(one.effect)} there?` : `${words(one.effect)} or ${words(one.against)}?`,
-    percent(one.askedPower), percent(one.expectedPower), percent(one.level), one.probabilityOfWeightAbove95 === null ? "–" : percent(one.probabilityOfWeightAbove95),
+    percent(one.askedPower), percent(one.expectedPower), percent(one.level), one.probabilityOfWeightAbove95 == null ? "–" : percent(one.probabilityOfWeightAbove95),
   ]);
   append(place, [h("h2", {}, "What it decides"), table({
     caption: "Power: how often a test at this level decides rightly; the last column: how often a diagnosis gives the right effect more than 95 % of the weight",

@@ -31,7 +31,7 @@ export function discriminationFields(plant, pointer, { effects }) {
 function rates(pointer) {
   const [power, level] = [numberInput(90, { min: 0, max: 100 }), numberInput(5, { min: 0, max: 100 })];
   const parameters = textInput();
-  const share = (input) => (numberOf(input) === null ? null : numberOf(input) / 100);
+  const share = (input) => (numberOf(input) == null ? null : numberOf(input) / 100);
   return {
     fields: [
       field("its further parameters", parameters, { hint: "in the order in which a diagnosis lists them; may be empty", pointer: `${pointer}/parameters` }),

@@ -28,13 +28,13 @@ export function limits(catalogue, plant, experiments) {
     field("count as known", prior, { hint: "only what is missing is designed", pointer: "/usePriorInformation", wide: true })), family.element);
   const value = () => ({
     name: name.value.trim(), samples: numberOf(samples), sampleTimeSeconds: continuous ? numberOf(step) : null, spectrumFamily: family.value(),
-    band: band(numberOf(low), numberOf(high)), energyCaps: numberOf(cap) === null ? null : { default: numberOf(cap) },
+    band: band(numberOf(low), numberOf(high)), energyCaps: numberOf(cap) == null ? null : { default: numberOf(cap) },
     usePriorInformation: prior.value === "model", priorExperimentIds: prior.value === "experiments" ? measured : null, tolerance: numberOf(tolerance),
   });
   return { element, value };
 }
 
 function band(low, high) {
-  if (low === null && high === null) return null;
-  return { minimumRadPerSecond: radPerSecond(low ?? 0), maximumRadPerSecond: high === null ? null : radPerSecond(high) };
+  if (low == null && high == null) return null;
+  return { minimumRadPerSecond: radPerSecond(low ?? 0), maximumRadPerSecond: high == null ? null : radPerSecond(high) };
 }

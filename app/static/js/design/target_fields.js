@@ -36,9 +36,9 @@ function responseFields(plant, pointer) {
     field("from (Hz)", low, { pointer: `${pointer}/minimumRadPerSecond` }),
     field("to (Hz)", high, { pointer: `${pointer}/maximumRadPerSecond` }),
     field(`at values of ${names}`, count, { hint: "spread evenly over the range", pointer: `${pointer}/operatingPoints` }));
-  const inRad = (input) => (numberOf(input) === null ? null : radPerSecond(numberOf(input)));
+  const inRad = (input) => (numberOf(input) == null ? null : radPerSecond(numberOf(input)));
   const value = () => ({
-    kind: "response_deviation", relative: true, standardDeviation: numberOf(share) === null ? null : numberOf(share) / 100 / QUANTILE_95,
+    kind: "response_deviation", relative: true, standardDeviation: numberOf(share) == null ? null : numberOf(share) / 100 / QUANTILE_95,
     minimumRadPerSecond: inRad(low), maximumRadPerSecond: inRad(high),
     operatingPoints: combinations(plant.schedulingVariables.map((one) => spread(one, Math.min(Math.max(numberOf(count) ?? 1, 1), 1000)))),
   });
@@ -68,7 +68,7 @@ function coefficientFields(plant, pointer) {
     fields(field(`at ${names}`, points, { pointer: `${pointer}/operatingPoints`, wide: true })),
     h("p", { class: "hint" }, "Largest standard deviation of each coefficient there."),
     h("div", { "data-pointer": `${pointer}/covariance` }, fields(inputs.map(([name, input]) => field(name, input)))));
-  const variance = (input) => (numberOf(input) === null ? null : numberOf(input) ** 2);
+  const variance = (input) => (numberOf(input) == null ? null : numberOf(input) ** 2);
   const value = () => ({
     kind: "local_covariance", operatingPoints: pointsIn(points.value, plant.schedulingVariables.length),
     covariance: inputs.map(([, input], i) => inputs.map((_, j) => (i === j ? variance(input) : 0))),
@@ -91,7 +91,7 @@ export function targetText(target, plant) {
     return `response within ± ${within} (95 %) from ${band} at ${target.operatingPoints.length} operating points`;
   }
   if (target.kind === "parameter_deviation") {
-    const each = target.standardDeviations.flatMap((value, i) => (value === null ? [] : [`${plant.parameterNames[i]} ${significant(value)}`]));
+    const each = target.standardDeviations.flatMap((value, i) => (value == null ? [] : [`${plant.parameterNames[i]} ${significant(value)}`]));
     return `standard deviations: ${each.join(", ")}`;
   }
   if (target.kind === "local_covariance") return `covariance of the coefficients at ${target.operatingPoints.length} operating points`;

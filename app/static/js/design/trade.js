@@ -44,8 +44,8 @@ async function compute(place, plant, design) {
 
 function drawCurve(place, plant, design, trials) {
   const points = [[1, design], ...trials.map((one) => [Number(NAME.exec(one.request.name)[1]), one])];
-  const reached = points.filter(([, one]) => one.totalEnergy !== null).sort(([a], [b]) => a - b);
-  const infeasible = points.filter(([, one]) => one.totalEnergy === null).map(([factor]) => `× ${factor}`);
+  const reached = points.filter(([, one]) => one.totalEnergy != null).sort(([a], [b]) => a - b);
+  const infeasible = points.filter(([, one]) => one.totalEnergy == null).map(([factor]) => `× ${factor}`);
   const note = infeasible.length ? ` Not to be reached within the limits: ${infeasible.join(", ")}.` : "";
   const unit = energyUnit(plant);
   return plot(place, {

@@ -19,7 +19,7 @@ export class AddEffect {
     const usable = experiments.filter((one) => comparable(one, model));
     const fitted = new Set([...fittedTo(model, models), ...diagnosis.experimentIds]);
     const compared = comparison ? new Set(comparison.experiments.filter((one) => one.data === "heldOut").map((one) => one.experimentId)) : null;
-    const heldOut = (one) => !fitted.has(one.id) && (compared === null || !compared.size || compared.has(one.id));
+    const heldOut = (one) => !fitted.has(one.id) && (compared == null || !compared.size || compared.has(one.id));
     this.fit = experimentChoice({ legend: "Fit to", experiments: usable, variables, ticked: (one) => diagnosis.experimentIds.includes(one.id), notes: () => "", pointer: "/experimentIds" });
     this.hold = experimentChoice({ legend: "Held out, for the error before and after", experiments: usable.filter((one) => !fitted.has(one.id)), variables, ticked: heldOut, notes: () => "", pointer: "/heldOutExperimentIds" });
     this.degree = select([[0, "constant"], [1, "affine in the scheduling variable"], [2, "quadratic"], [3, "cubic"]], diagnosis.amplitudeDegree);

@@ -36,7 +36,7 @@ function errorTable(columns, steps) {
   const rows = [
     ["effects", ([, model]) => effectsText(model)],
     ["error, fitted", ([, model]) => (step(model) ? percent(step(model).fitted) : "–")],
-    ["error, held out", ([, model]) => (step(model) && step(model).heldOut !== null ? percent(step(model).heldOut) : "–")],
+    ["error, held out", ([, model]) => (step(model) && step(model).heldOut != null ? percent(step(model).heldOut) : "–")],
     ["χ² per degree of freedom", ([, model]) => misfit(model, (test) => significant(ratio(test)))],
     ["p-value of the lack of fit", ([, model]) => misfit(model, (test) => probability(test.pValue))],
   ];

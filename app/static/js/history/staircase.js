@@ -16,12 +16,12 @@ export function stepsOf(line) {
 }
 
 export function staircasePlot(place, steps) {
-  const curves = [["fitted", (one) => one.fitted], ["held out", (one) => one.heldOut]].map(([name, valueOf]) => ({ name, values: steps.map(valueOf) })).filter((one) => one.values.some((value) => value !== null));
+  const curves = [["fitted", (one) => one.fitted], ["held out", (one) => one.heldOut]].map(([name, valueOf]) => ({ name, values: steps.map(valueOf) })).filter((one) => one.values.some((value) => value != null));
   const places = steps.map((_, i) => i);
   return plot(place, {
     caption: "Relative error ‖Y − Ŷ‖/‖Y‖ of each version at the excited lines.", height: 340,
     draw: () => ({ data: curves.flatMap((curve, i) => [stair(curve, places, i), labels(curve, places, i, curves.length)]), layout: layout(steps, curves) }),
-    table: () => ({ columns: ["version", "error, fitted", "error, held out", "p-value of the lack of fit"], rows: steps.map((one) => [one.label, percent(one.fitted), one.heldOut === null ? "–" : percent(one.heldOut), probability(one.lackOfFit.pValue)]) }),
+    table: () => ({ columns: ["version", "error, fitted", "error, held out", "p-value of the lack of fit"], rows: steps.map((one) => [one.label, percent(one.fitted), one.heldOut == null ? "–" : percent(one.heldOut), probability(one.lackOfFit.pValue)]) }),
   });
 }
 
@@ -32,13 +32,13 @@ function stair({ name, values }, places, i) {
 
 function labels({ values }, places, i, count) {
   const offset = count > 1 ? 0.3 + 0.4 * i : 0.5;
-  return { x: places.map((place) => place + offset), y: values.map((value) => inPercent(value) * 1.02), text: values.map((value) => (value === null ? "" : percent(value))), mode: "text", textposition: "top center", cliponaxis: false, showlegend: false, hoverinfo: "skip", textfont: { color: seriesColour(i) } };
+  return { x: places.map((place) => place + offset), y: values.map((value) => inPercent(value) * 1.02), text: values.map((value) => (value == null ? "" : percent(value))), mode: "text", textposition: "top center", cliponaxis: false, showlegend: false, hoverinfo: "skip", textfont: { color: seriesColour(i) } };
 }
 
-const inPercent = (value) => (value === null ? null : 100 * value);
+const inPercent = (value) => (value == null ? null : 100 * value);
 
 function layout(steps, curves) {
-  const errors = curves.flatMap((one) => one.values).filter((value) => value !== null && value > 0).map((value) => Math.log10(100 * value));
+  const errors = curves.flatMap((one) => one.values).filter((value) => value != null && value > 0).map((value) => Math.log10(100 * value));
   const [low, high] = [Math.min(...errors), Math.max(...errors)];
   const edge = Math.max(0.12 * (high - low), 0.08);
   return {
@@ -50,7 +50,7 @@ function layout(steps, curves) {
 // What the last step of a model brought, in words: {kind of message, text}.
 export function broughtText(model) {
   const { before, after } = model.extension;
-  const heldOut = before.heldOut !== null && after.heldOut !== null;
+  const heldOut = before.heldOut != null && after.heldOut != null;
   const [from, to] = heldOut ? [before.heldOut, after.heldOut] : [before.fitted, after.fitted];
   const what = heldOut ? "on the held-out experiments" : "on the fitted experiments (none were held out)";
   const fitted = heldOut ? ` On the fitted ones: ${percent(before.fitted)} → ${percent(after.fitted)}.` : "";
@@ -61,7 +61,7 @@ export function broughtText(model) {
 
 // What all steps together brought.
 export function sinceText(steps) {
-  const held = steps.every((one) => one.heldOut !== null);
+  const held = steps.every((one) => one.heldOut != null);
   const [from, to] = [steps[0], steps.at(-1)].map((one) => (held ? one.heldOut : one.fitted));
   return `Since the first version: ${percent(from)} → ${percent(to)}.`;
 }

@@ -9,7 +9,7 @@ export function experimentTitle(experiment, variables) {
 
 // What a model can be held against: one input and output at an operating point, for models along p(t) records along it.
 export function comparable(experiment, model) {
-  if (experiment.kind === "varyingRecord") return model.varying !== null;
+  if (experiment.kind === "varyingRecord") return model.varying != null;
   const several = model.stateSpace && (model.stateSpace.inputCount > 1 || model.stateSpace.outputCount > 1);
   return ["timeRecord", "frequencyResponse"].includes(experiment.kind) && !several;
 }

@@ -20,7 +20,7 @@ export function provenance(model, { plant, models, experiments }) {
     model.designId && ["design", h("a", { href: at(`design/${model.designId}`) }, "the design that its experiments carry out")],
     model.extension?.diagnosisId && ["diagnosis", h("a", { href: at(`diagnose/${model.extension.diagnosisId}`) }, "the one that pointed to the effect")],
     ["local estimator", pluginText(model.localEstimator)], ["estimator over the range", pluginText(model.lpvEstimator)], ["spectra", pluginText(model.spectralEstimator)],
-    ["seed", model.seed === null ? "none: nothing was drawn at random" : String(model.seed)],
+    ["seed", model.seed == null ? "none: nothing was drawn at random" : String(model.seed)],
     ["identifier", h("code", {}, model.id)],
   ].filter((row) => row && row[1]);
   const used = model.experimentIds.map((id) => [experiments.has(id)
@@ -34,6 +34,6 @@ export function provenance(model, { plant, models, experiments }) {
 function pluginText(document) {
   if (!document) return null;
   const { kind, ...options } = document;
-  const given = Object.entries(options).filter(([, value]) => value !== null).map(([name, value]) => `${words(name)} ${typeof value === "object" ? JSON.stringify(value) : value}`);
+  const given = Object.entries(options).filter(([, value]) => value != null).map(([name, value]) => `${words(name)} ${typeof value === "object" ? JSON.stringify(value) : value}`);
   return [words(kind), ...given].join(", ");
 }
