@@ -26,7 +26,7 @@ class JointResiduals:
     """Residuals of M experiments for T(p_m) (M, n, k), followed by the rows of a prior estimate.
 
     Experiments of unknown variance belong to groups that share one; a group's name tells which. Records are those of
-    `identification.initial_conditions.fitted_record`, whose structure is `structure_of_records`.
+    `identification.lti.initial_conditions.fitted_record`, whose structure is `structure_of_records`.
     """
 
     structure: RationalForm

@@ -4,8 +4,8 @@ import control
 import numpy as np
 import pytest
 
-from identification.control_objects import from_transfer_function, to_transfer_function
 from identification.errors import MisuseError, RangeError
+from identification.exports.control_objects import from_transfer_function, to_transfer_function
 from identification.models.rational import RationalStructure
 
 CASES = [
