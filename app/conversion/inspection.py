@@ -2,7 +2,7 @@
 
 from app.arrays import finite_or_none
 from app.schemas.experiments import Understanding
-from identification.inspection import RecordInspection, ResponseInspection, inspect
+from identification.measurements.inspection import RecordInspection, ResponseInspection, inspect
 from identification.signals import FrequencyResponse, Measurement
 
 

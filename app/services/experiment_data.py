@@ -21,7 +21,7 @@ from app.schemas.experiments import (
     TimeRecordData,
 )
 from app.services.experiments import KIND, experiment_of
-from identification.record_spectrum import record_spectrum
+from identification.measurements.record_spectrum import record_spectrum
 from identification.signals import TimeRecord
 
 

@@ -9,10 +9,10 @@ import numpy as np
 
 from identification.errors import MisuseError
 from identification.estimates import Estimate, LocalEstimate
-from identification.inspection import inspect_record
 from identification.lpv.joint_likelihood import JointLikelihood
 from identification.lti.prediction_error import PredictionError
 from identification.lti.rational_fit import RationalFit
+from identification.measurements.inspection import inspect_record
 from identification.methods.method import Data, Method, Takes, Task, held_still
 from identification.models.physical import PhysicalForm, RationalForm
 from identification.models.rational import RationalStructure

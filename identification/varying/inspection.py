@@ -6,7 +6,7 @@ import numpy as np
 
 from identification.arrays import FloatArray
 from identification.errors import MisuseError, RangeError
-from identification.inspection import MOST_LINES_LISTED
+from identification.measurements.inspection import MOST_LINES_LISTED
 from identification.spectral.periodic_average import excited_lines
 from identification.varying.records import (
     SteadyPeriods,

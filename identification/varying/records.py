@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from identification.arrays import FloatArray, finite_floats
 from identification.errors import MisuseError, RangeError, ShapeError
-from identification.inspection import find_period
+from identification.measurements.inspection import find_period
 from identification.scheduling import SchedulingVariable
 from identification.signals import require_sampling
 from identification.spectral.periodic_average import transient_periods

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from identification.arrays import BoolArray, ComplexArray, FloatArray
-from identification.inspection import find_period
+from identification.measurements.inspection import find_period
 from identification.signals import TimeRecord
 from identification.spectral.periodic_average import excited_lines, transient_periods
 

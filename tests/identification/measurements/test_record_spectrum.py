@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from identification.record_spectrum import record_spectrum
+from identification.measurements.record_spectrum import record_spectrum
 from identification.signals import TimeRecord
 
 L, STEP = 200, 0.1

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from identification.errors import MisuseError
-from identification.inspection import find_period, inspect
+from identification.measurements.inspection import find_period, inspect
 from identification.models.rational import RationalStructure
 from identification.signals import FrequencyResponse, TimeRecord
 from identification.simulation import simulate

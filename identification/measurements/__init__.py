@@ -1,0 +1,1 @@
+"""What can be understood of measurements before a model is fitted to them."""
