@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks.command import command_line, write_json
-from identification.state_space import StateSpace
+from identification.models.system import StateSpace
 from identification.subspace.equidistant_subspace import EquidistantSubspace
 from identification.subspace.frequency_subspace import FrequencySubspace
 from identification.subspace.time_domains import held

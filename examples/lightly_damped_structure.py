@@ -6,8 +6,8 @@ It stands in for the measured truss of [Akcay2008, Identification of a flexible 
 import numpy as np
 from scipy.linalg import block_diag
 
+from identification.models.system import StateSpace
 from identification.signals import FrequencyResponse
-from identification.state_space import StateSpace
 from identification.subspace.time_domains import held
 
 SAMPLE_TIME = 1 / 200

@@ -8,8 +8,8 @@ from numpy.typing import ArrayLike
 
 from identification.arrays import BoolArray, ComplexArray, FloatArray, finite_floats
 from identification.errors import ShapeError
+from identification.models.system import MatrixSizes, StateSpace, require_matching
 from identification.scheduling import ParameterDependence, ProductBasis, SchedulingVariable
-from identification.state_space import MatrixSizes, StateSpace, require_matching
 
 
 @dataclass(frozen=True, eq=False)

@@ -24,10 +24,10 @@ from app.schemas.state_space import (
     StateSpaceModelRequest,
 )
 from identification.errors import MisuseError
+from identification.models.system import StateSpace
 from identification.parameter_varying import ParameterVaryingStateSpace
 from identification.parametric.estimate import ResponseError
 from identification.scheduling import ParameterDependence
-from identification.state_space import StateSpace
 from identification.subspace.result import SubspaceEstimate
 
 

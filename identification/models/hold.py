@@ -4,7 +4,7 @@ import numpy as np
 from scipy.linalg import expm
 
 from identification.arrays import ComplexArray, FloatArray
-from identification.resolvent import resolvent_by_entry
+from identification.models.resolvent import resolvent_by_entry
 from identification.signals import FrequencyResponse, HeldInput
 
 

@@ -7,8 +7,8 @@ import numpy as np
 
 from identification.arrays import ComplexArray, FloatArray
 from identification.errors import NotIdentifiableError
+from identification.models.resolvent import resolvent
 from identification.parametric.shift_basis import ShiftBasis
-from identification.resolvent import resolvent
 from identification.scheduling import ParameterDependence
 from identification.signals import FrequencyResponse
 

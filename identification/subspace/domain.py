@@ -7,8 +7,8 @@ import numpy as np
 
 from identification.arrays import ComplexArray, FloatArray
 from identification.errors import MisuseError, RangeError
+from identification.models.system import StateSpace
 from identification.signals import FrequencyResponse
-from identification.state_space import StateSpace
 from identification.subspace.time_domains import bilinear_variable, from_bilinear, from_hold, from_turned
 
 NEARLY_EVEN = 0.1  # lines spread as evenly as this stay where they are

@@ -3,9 +3,9 @@
 import numpy as np
 
 from identification.arrays import FloatArray
+from identification.models.system import StateSpace
 from identification.outcome import Outcome
 from identification.signals import FrequencyResponse
-from identification.state_space import StateSpace
 from identification.subspace.fit import line_errors, response_size
 from identification.subspace.input_matrices import input_matrices
 from identification.subspace.method import Method, block_rows_of, require_positive

@@ -4,7 +4,7 @@ import numpy as np
 
 from identification.arrays import ComplexArray, FloatArray
 from identification.errors import RangeError
-from identification.resolvent import resolvent
+from identification.models.resolvent import resolvent
 from identification.signals import FrequencyResponse
 
 EXTREME = 1e100

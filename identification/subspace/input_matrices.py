@@ -4,7 +4,7 @@ import numpy as np
 
 from identification.arrays import ComplexArray, FloatArray
 from identification.errors import NotIdentifiableError
-from identification.resolvent import resolvent, resolvent_by_entry
+from identification.models.resolvent import resolvent, resolvent_by_entry
 from identification.subspace.compression import solve_compressed, triangle
 from identification.subspace.noise import Noise
 

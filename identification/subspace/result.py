@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 
 from identification.arrays import FloatArray
+from identification.models.system import StateSpace
 from identification.outcome import Outcome
 from identification.signals import OperatingPoint
-from identification.state_space import StateSpace
 
 
 @dataclass(frozen=True)

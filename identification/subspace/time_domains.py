@@ -5,7 +5,7 @@ from scipy.linalg import expm, logm
 
 from identification.arrays import ComplexArray, FloatArray
 from identification.errors import NotIdentifiableError, RangeError
-from identification.state_space import StateSpace
+from identification.models.system import StateSpace
 
 
 def bilinear_variable(omega: FloatArray, centre: float) -> ComplexArray:

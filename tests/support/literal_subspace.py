@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from identification.state_space import StateSpace
+from identification.models.system import StateSpace
 
 
 def block_vandermonde(z, blocks):

@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from identification.models.system import StateSpace
 from identification.signals import FrequencyResponse
-from identification.state_space import StateSpace
 
 
 def random_system(generator, order, inputs, outputs, sample_time, radius=(0.3, 0.95), scale=3.0):

@@ -6,8 +6,8 @@ from scipy.linalg import subspace_angles
 
 from benchmarks.subspace_consistency import run
 from identification.errors import MisuseError, NotIdentifiableError, RangeError
+from identification.models.system import StateSpace
 from identification.signals import FrequencyResponse
-from identification.state_space import StateSpace
 from identification.subspace.frequency_subspace import FrequencySubspace
 from identification.subspace.input_matrices import input_matrices
 from identification.subspace.noise import Noise

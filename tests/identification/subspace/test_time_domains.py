@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from identification.errors import MisuseError, NotIdentifiableError, RangeError
+from identification.models.system import StateSpace
 from identification.signals import FrequencyResponse
-from identification.state_space import StateSpace
 from identification.subspace.domain import Domain
 from identification.subspace.frequency_subspace import FrequencySubspace
 from identification.subspace.time_domains import from_bilinear, from_hold, from_turned, held

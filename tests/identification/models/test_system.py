@@ -5,9 +5,9 @@ import pytest
 
 from identification.bases.polynomial import Polynomial
 from identification.errors import MisuseError, RangeError, ShapeError
+from identification.models.system import StateSpace
 from identification.parameter_varying import ParameterVaryingStateSpace
 from identification.scheduling import ProductBasis, SchedulingVariable
-from identification.state_space import StateSpace
 from tests.support.state_space import random_system
 
 OMEGA = np.linspace(0.05, 6.0, 25)

@@ -8,7 +8,7 @@ from scipy.linalg import schur
 
 from identification.arrays import BoolArray, ComplexArray, FloatArray, finite_floats, require_positive
 from identification.errors import MisuseError, ShapeError
-from identification.resolvent import resolvent
+from identification.models.resolvent import resolvent
 
 
 class MatrixSizes:
