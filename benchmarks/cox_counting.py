@@ -8,9 +8,9 @@ import numpy as np
 
 from benchmarks.command import timed
 from identification.arrays import FloatArray
-from identification.correlation_analysis import CorrelatedSubMarkov
-from identification.ho_kalman import full_realisation, largest_entries, reduced_realisation
-from identification.sub_markov import BasisSelection, HankelBlocks, Word, every_word
+from identification.varying.correlation_analysis import CorrelatedSubMarkov
+from identification.varying.ho_kalman import full_realisation, largest_entries, reduced_realisation
+from identification.varying.sub_markov import BasisSelection, HankelBlocks, Word, every_word
 
 Parameter = tuple[Word, int, int]
 

@@ -26,13 +26,13 @@ import numpy as np
 from benchmarks.command import command_line, print_table, write_json
 from benchmarks.cox_counting import countings
 from benchmarks.processes import spread
-from identification.affine_state_space import Matrices, best_fit_rate, simulate_matrices, variance_accounted_for
-from identification.correlation_analysis import CorrelatedSubMarkov, WhiteExcitation
-from identification.ho_kalman import full_realisation, largest_entries, reduced_realisation
 from identification.scheduling import with_constant
-from identification.sub_markov import BasisSelection, every_word
+from identification.varying.affine_state_space import Matrices, best_fit_rate, simulate_matrices, variance_accounted_for
+from identification.varying.correlation_analysis import CorrelatedSubMarkov, WhiteExcitation
 from identification.varying.correlation_realisation import CorrelationRealisation
+from identification.varying.ho_kalman import full_realisation, largest_entries, reduced_realisation
 from identification.varying.records import VaryingRecord
+from identification.varying.sub_markov import BasisSelection, every_word
 from tests.support.random_state_space import random_affine, slow_record, white_record
 
 ORDER, SAMPLES, BASES = 4, 5000, 10

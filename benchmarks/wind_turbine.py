@@ -34,9 +34,9 @@ from benchmarks.wind_turbine_plant import (
     noise_free,
     validation_fits,
 )
-from identification.affine_estimate import AffineEstimate
 from identification.arrays import ComplexArray, FloatArray
 from identification.outcome import Outcome
+from identification.varying.affine_estimate import AffineEstimate
 from identification.varying.periodic_likelihood import PeriodicLikelihood
 from identification.varying.periodic_moesp import PeriodicMoesp
 

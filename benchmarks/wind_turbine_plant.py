@@ -6,10 +6,10 @@ from functools import cache
 import numpy as np
 from scipy.signal import lfilter
 
-from identification.affine_state_space import AffineStateSpace, Matrices, simulate_matrices
 from identification.arrays import FloatArray
 from identification.scheduling import SchedulingVariable
 from identification.varying.affine_parameters import AffineSizes
+from identification.varying.affine_state_space import AffineStateSpace, Matrices, simulate_matrices
 from identification.varying.harmonic_noise import HarmonicNoise
 from identification.varying.periodic_residuals import PeriodicResiduals
 from identification.varying.records import VaryingRecord, steady_periods

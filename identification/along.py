@@ -4,13 +4,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from identification.affine_estimate import AffineEstimate
 from identification.arrays import FloatArray
 from identification.confidence import covariance_root
 from identification.errors import MisuseError, RangeError
 from identification.models.model import Model
 from identification.models.recursion import propagate
 from identification.parameter_varying import ParameterVaryingStateSpace
+from identification.varying.affine_estimate import AffineEstimate
 
 UNSTABLE = "the simulated output grows beyond all numbers: the model is unstable along this scheduling"
 

@@ -18,14 +18,14 @@ from app.schemas.plants import (
 )
 from app.schemas.state_space import StateSpaceResult
 from app.schemas.varying import EigenvaluesDocument, VaryingModelRequest
-from identification.affine_estimate import AffineEstimate
-from identification.affine_state_space import AffineStateSpace
 from identification.arrays import FloatArray, IntArray
 from identification.errors import MisuseError
 from identification.outcome import Outcome
 from identification.parameter_varying import ParameterVaryingStateSpace
 from identification.parametric.pole_guarantee import fine_grid
+from identification.varying.affine_estimate import AffineEstimate
 from identification.varying.affine_parameters import AffineSizes
+from identification.varying.affine_state_space import AffineStateSpace
 
 
 def requested_structure(plant: Plant, request: VaryingModelRequest) -> DiscreteStateSpaceStructure:

@@ -6,8 +6,8 @@ from typing import Any, Literal
 import numpy as np
 
 from app.schemas.varying import NoiseSpectrumDocument, SteadyPeriodsDocument, VaryingFit
-from identification.affine_estimate import AffineEstimate
 from identification.errors import MisuseError
+from identification.varying.affine_estimate import AffineEstimate
 from identification.varying.noise_spectrum import NoiseSpectrum, noise_between_harmonics, noise_of_errors
 from identification.varying.records import TOLERANCE, SteadyPeriods, VaryingRecord, steady_periods
 from identification.varying.reproduction import output_deviations, reproduced

@@ -5,12 +5,12 @@ from typing import ClassVar, cast
 
 import numpy as np
 
-from identification.affine_estimate import AffineEstimate
 from identification.bases.polynomial import Polynomial
 from identification.estimates import Estimate
 from identification.methods.method import Method, Takes, Task
 from identification.models.state_space import StateSpaceStructure
 from identification.scheduling import ProductBasis
+from identification.varying.affine_estimate import AffineEstimate
 from identification.varying.correlation_realisation import CorrelationRealisation
 from identification.varying.frozen import affine_model
 from identification.varying.periodic_likelihood import PeriodicLikelihood

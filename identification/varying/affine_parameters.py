@@ -4,11 +4,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from identification.affine_state_space import AffineStateSpace, Matrices
 from identification.arrays import FloatArray, IntArray
 from identification.errors import RangeError
 from identification.models.chart import perpendicular
 from identification.scheduling import SchedulingVariable
+from identification.varying.affine_state_space import AffineStateSpace, Matrices
 
 
 @dataclass(frozen=True)

@@ -5,13 +5,13 @@ from itertools import pairwise
 
 import numpy as np
 
-from identification.affine_estimate import AffineEstimate
 from identification.arrays import BoolArray, ComplexArray, FloatArray
 from identification.comparison.lack_of_fit import lack_of_fit
-from identification.correlation_assumptions import noise_tests
 from identification.errors import MisuseError
 from identification.outcome import TestResult
+from identification.varying.affine_estimate import AffineEstimate
 from identification.varying.affine_parameters import AffineSizes
+from identification.varying.correlation_assumptions import noise_tests
 from identification.varying.harmonic_noise import LEAST_LINES
 from identification.varying.periodic_residuals import PeriodicResiduals
 from identification.varying.records import VaryingRecord, steady_periods

@@ -5,26 +5,32 @@ from typing import Annotated, ClassVar, Literal, Protocol
 
 import numpy as np
 
-from identification.affine_estimate import AffineEstimate
-from identification.affine_state_space import Matrices, simulate_matrices
 from identification.arrays import FloatArray
-from identification.correlation_analysis import WhiteExcitation
-from identification.correlation_assumptions import (
+from identification.errors import MisuseError, NotIdentifiableError, RangeError
+from identification.outcome import Outcome
+from identification.scheduling import with_constant
+from identification.varying.affine_estimate import AffineEstimate
+from identification.varying.affine_parameters import AffineSizes
+from identification.varying.affine_state_space import Matrices, simulate_matrices
+from identification.varying.correlation_analysis import WhiteExcitation
+from identification.varying.correlation_assumptions import (
     broken_assumptions,
     correlation_applies,
     noise_tests,
     signal_tests,
 )
-from identification.errors import MisuseError, NotIdentifiableError, RangeError
-from identification.ho_kalman import Realisation, full_realisation, largest_entries, reduced_realisation
-from identification.outcome import Outcome
-from identification.scheduling import with_constant
-from identification.sub_markov import BasisSelection, ExactSubMarkov, SubMarkovSource, SummedSubMarkov, every_word
-from identification.sub_markov_least_squares import WordRegression
-from identification.varying.affine_parameters import AffineSizes
+from identification.varying.ho_kalman import Realisation, full_realisation, largest_entries, reduced_realisation
 from identification.varying.output_error import output_error
 from identification.varying.progress import Progress, silent, within
 from identification.varying.records import VaryingRecord
+from identification.varying.sub_markov import (
+    BasisSelection,
+    ExactSubMarkov,
+    SubMarkovSource,
+    SummedSubMarkov,
+    every_word,
+)
+from identification.varying.sub_markov_least_squares import WordRegression
 
 NOISE_FREE = 1e-5
 BEYOND_BOUNDS = 1e100

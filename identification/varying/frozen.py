@@ -5,8 +5,6 @@ from dataclasses import replace
 import numpy as np
 from scipy.linalg import block_diag
 
-from identification.affine_estimate import AffineEstimate
-from identification.affine_state_space import AffineStateSpace
 from identification.arrays import FloatArray
 from identification.bases.polynomial import Polynomial
 from identification.errors import MisuseError
@@ -16,7 +14,9 @@ from identification.outcome import Outcome
 from identification.places.linear import Coefficient
 from identification.places.placed import PlacedEffect
 from identification.scheduling import ProductBasis
+from identification.varying.affine_estimate import AffineEstimate
 from identification.varying.affine_parameters import AffineSizes
+from identification.varying.affine_state_space import AffineStateSpace
 
 ROUNDS, BALANCED = 60, 1e-13
 

@@ -5,10 +5,10 @@ from functools import cached_property
 
 import numpy as np
 
-from identification.affine_state_space import Matrices
 from identification.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from identification.scheduling import with_constant
 from identification.varying.affine_parameters import AffineSizes
+from identification.varying.affine_state_space import Matrices
 from identification.varying.period_recursion import periodic_response
 
 

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from identification.affine_state_space import AffineStateSpace
 from identification.arrays import ComplexArray, FloatArray
 from identification.errors import NotIdentifiableError
 from identification.varying.affine_parameters import AffineSizes
+from identification.varying.affine_state_space import AffineStateSpace
 from identification.varying.harmonic_blocks import HarmonicBlocks
 
 STABLE_RADIUS = 0.95

@@ -6,14 +6,14 @@ from typing import Annotated, ClassVar
 import numpy as np
 from scipy.linalg import solve_triangular
 
-from identification.affine_estimate import AffineEstimate
-from identification.affine_state_space import AffineStateSpace, Matrices, frozen_matrices
 from identification.arrays import FloatArray
 from identification.errors import NotIdentifiableError, RangeError, ShapeError
 from identification.least_squares import levenberg_marquardt
 from identification.models.recursion import propagate
 from identification.outcome import Outcome
+from identification.varying.affine_estimate import AffineEstimate
 from identification.varying.affine_parameters import AffineSizes
+from identification.varying.affine_state_space import AffineStateSpace, Matrices, frozen_matrices
 from identification.varying.progress import Progress, Steps, silent, within
 from identification.varying.records import VaryingRecord
 

@@ -5,9 +5,9 @@ from functools import cached_property
 
 import numpy as np
 
-from identification.affine_state_space import Matrices, frozen_matrices
 from identification.arrays import FloatArray
 from identification.scheduling import with_constant
+from identification.varying.affine_state_space import Matrices, frozen_matrices
 
 AT_ONCE = 100_000  # numbers of x(t): what stays in the cache, and no more memory than one state needs
 

@@ -5,15 +5,15 @@ from typing import Annotated, ClassVar
 
 import numpy as np
 
-from identification.affine_estimate import AffineEstimate
-from identification.affine_state_space import AffineStateSpace
 from identification.arrays import FloatArray
 from identification.errors import MisuseError, NotIdentifiableError, RangeError, ShapeError
 from identification.least_squares import LeastSquaresSolution, levenberg_marquardt
 from identification.outcome import Outcome
 from identification.response_tests import variance_inflation
 from identification.scheduling import SchedulingVariable
+from identification.varying.affine_estimate import AffineEstimate
 from identification.varying.affine_parameters import AffineSizes, balanced, stated_order
+from identification.varying.affine_state_space import AffineStateSpace
 from identification.varying.input_affine_start import input_affine_start
 from identification.varying.periodic_residuals import PeriodicResiduals, lack_of_fit
 from identification.varying.perturbed_starts import perturbed_starts, stabilised

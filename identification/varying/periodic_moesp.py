@@ -5,14 +5,14 @@ from typing import Annotated, ClassVar
 
 import numpy as np
 
-from identification.affine_estimate import AffineEstimate
-from identification.affine_state_space import AffineStateSpace, frozen_matrices, simulate_matrices
 from identification.arrays import FloatArray
 from identification.errors import MisuseError, NotIdentifiableError, RangeError
 from identification.models.recursion import propagate
 from identification.outcome import Outcome
 from identification.scheduling import with_constant
+from identification.varying.affine_estimate import AffineEstimate
 from identification.varying.affine_parameters import stated_order
+from identification.varying.affine_state_space import AffineStateSpace, frozen_matrices, simulate_matrices
 from identification.varying.periodic_observability import common_basis, periodic_observability
 from identification.varying.progress import Progress, silent
 from identification.varying.records import TOLERANCE, VaryingRecord, scheduling_period

@@ -4,11 +4,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from identification.affine_estimate import AffineEstimate
-from identification.affine_state_space import AffineStateSpace, best_fit_rate, variance_accounted_for
 from identification.arrays import FloatArray
 from identification.errors import RangeError, ShapeError
 from identification.models.recursion import propagate
+from identification.varying.affine_estimate import AffineEstimate
+from identification.varying.affine_state_space import AffineStateSpace, best_fit_rate, variance_accounted_for
 from identification.varying.records import VaryingRecord
 
 RANK = 1e-10

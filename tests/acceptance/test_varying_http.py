@@ -7,8 +7,8 @@ import pytest
 
 from app.files import csv_writer, mat_writer, npz_writer
 from benchmarks.wind_turbine_plant import PLANT
-from identification.affine_estimate import AffineEstimate
 from identification.outcome import Outcome
+from identification.varying.affine_estimate import AffineEstimate
 from identification.varying.affine_parameters import AffineSizes
 from tests.support import varying
 from tests.support.api import Api, Json

@@ -3,9 +3,9 @@
 import numpy as np
 
 from benchmarks.cox_counting import countings, one_by_one, products, reduced_parameters
-from identification.correlation_analysis import WhiteExcitation
 from identification.scheduling import with_constant
-from identification.sub_markov import every_word
+from identification.varying.correlation_analysis import WhiteExcitation
+from identification.varying.sub_markov import every_word
 from tests.support.random_state_space import random_affine, white_record
 
 

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 import identification.varying
-from identification.affine_estimate import AffineEstimate
-from identification.affine_state_space import AffineStateSpace, variance_accounted_for
 from identification.registry import discover
+from identification.varying.affine_estimate import AffineEstimate
 from identification.varying.affine_parameters import AffineSizes
+from identification.varying.affine_state_space import AffineStateSpace, variance_accounted_for
 from identification.varying.records import VaryingRecord
 from tests.identification.varying.models import periodic_record, random_model
 

@@ -4,8 +4,8 @@ from itertools import product
 
 import numpy as np
 
-from identification.affine_state_space import AffineStateSpace
 from identification.arrays import FloatArray
+from identification.varying.affine_state_space import AffineStateSpace
 from identification.varying.records import VaryingRecord
 
 

@@ -3,9 +3,9 @@
 import numpy as np
 
 from benchmarks.wind_turbine_plant import PLANT, scheduling
-from identification.affine_state_space import AffineStateSpace
 from identification.arrays import FloatArray
 from identification.scheduling import SchedulingVariable
+from identification.varying.affine_state_space import AffineStateSpace
 from tests.support.api import Json
 
 PERIOD, PERIODS, NOISE = 120, 25, 0.1

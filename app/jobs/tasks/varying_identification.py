@@ -22,8 +22,8 @@ from app.schemas.experiments import Experiment
 from app.schemas.plants import Plant
 from app.schemas.plug_ins import PlugInDocument
 from app.schemas.varying import VaryingModelRequest, VaryingResult
-from identification.affine_estimate import AffineEstimate
 from identification.errors import NotIdentifiableError
+from identification.varying.affine_estimate import AffineEstimate
 from identification.varying.progress import within
 from identification.varying.records import VaryingRecord
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from identification.affine_state_space import AffineStateSpace
 from identification.arrays import FloatArray
+from identification.varying.affine_state_space import AffineStateSpace
 from identification.varying.records import VaryingRecord
 
 

@@ -5,9 +5,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from identification.affine_state_space import AffineStateSpace, best_fit_rate, variance_accounted_for
 from identification.errors import RangeError, ShapeError
 from identification.scheduling import SchedulingVariable
+from identification.varying.affine_state_space import AffineStateSpace, best_fit_rate, variance_accounted_for
 from tests.identification.varying.models import random_model, step_by_step
 
 

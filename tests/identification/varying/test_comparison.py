@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from benchmarks.wind_turbine_plant import PLANT
-from identification.affine_estimate import AffineEstimate
 from identification.errors import MisuseError
 from identification.outcome import Outcome
+from identification.varying.affine_estimate import AffineEstimate
 from identification.varying.comparison import VaryingComparison, compare_varying
 from identification.varying.output_error import output_error
 from identification.varying.periodic_likelihood import PeriodicLikelihood

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from identification.affine_state_space import best_fit_rate, variance_accounted_for
-from identification.correlation_assumptions import A1, A2, A3
 from identification.errors import MisuseError, NotIdentifiableError, RangeError
+from identification.varying.affine_state_space import best_fit_rate, variance_accounted_for
+from identification.varying.correlation_assumptions import A1, A2, A3
 from identification.varying.correlation_realisation import CorrelationRealisation
 from identification.varying.records import VaryingRecord
 from tests.support.random_state_space import noisy_record, random_affine, slow_record, white_record

@@ -5,15 +5,15 @@ import dataclasses
 import numpy as np
 import pytest
 
-from identification.affine_estimate import AffineEstimate
-from identification.affine_state_space import AffineStateSpace
 from identification.effects.delay import Delay
 from identification.errors import MisuseError
 from identification.extension.response import linear_response
 from identification.outcome import Outcome
 from identification.places.placed import placed
 from identification.scheduling import SchedulingVariable
+from identification.varying.affine_estimate import AffineEstimate
 from identification.varying.affine_parameters import AffineSizes
+from identification.varying.affine_state_space import AffineStateSpace
 from identification.varying.frozen import affine_estimate, frozen, smallest_basis
 from tests.identification.varying.models import random_model
 

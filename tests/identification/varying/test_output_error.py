@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from identification.affine_state_space import AffineStateSpace
 from identification.errors import NotIdentifiableError, ShapeError
 from identification.varying.affine_parameters import AffineSizes
+from identification.varying.affine_state_space import AffineStateSpace
 from identification.varying.output_error import _Problem, output_error
 from identification.varying.records import VaryingRecord
 from tests.support.random_state_space import random_affine, white_record

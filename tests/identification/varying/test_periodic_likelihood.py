@@ -9,15 +9,15 @@ from hypothesis import strategies as st
 
 from benchmarks.wind_turbine_plant import PLANT, SIZES, THETA, aligned, cramer_rao, disturbed, noise_free
 from benchmarks.wind_turbine_plant import validation_fits as fits
-from identification.affine_estimate import AffineEstimate
-from identification.affine_state_space import variance_accounted_for
 from identification.errors import MisuseError, NotIdentifiableError, ShapeError
 from identification.lti.rational_fit import RationalFit
 from identification.models.rational import RationalStructure
 from identification.outcome import Outcome
 from identification.signals import TimeRecord
 from identification.spectral.periodic_average import PeriodicAverage
+from identification.varying.affine_estimate import AffineEstimate
 from identification.varying.affine_parameters import AffineSizes, balanced
+from identification.varying.affine_state_space import variance_accounted_for
 from identification.varying.harmonic_blocks import HarmonicBlocks
 from identification.varying.harmonic_noise import harmonic_noise
 from identification.varying.periodic_likelihood import PeriodicLikelihood

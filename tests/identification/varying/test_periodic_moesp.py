@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from benchmarks.wind_turbine_plant import PLANT, disturbed, noise_free, validation_fits
-from identification.affine_state_space import variance_accounted_for
 from identification.errors import MisuseError, NotIdentifiableError, RangeError
+from identification.varying.affine_state_space import variance_accounted_for
 from identification.varying.periodic_likelihood import PeriodicLikelihood
 from identification.varying.periodic_moesp import PeriodicMoesp
 from identification.varying.records import VaryingRecord

@@ -8,7 +8,7 @@ from scipy.linalg import qr, solve_triangular
 
 from identification.arrays import FloatArray
 from identification.errors import NotIdentifiableError, RangeError, ShapeError
-from identification.sub_markov import BasisSelection, HankelBlocks, Word
+from identification.varying.sub_markov import BasisSelection, HankelBlocks, Word
 
 MOST_REGRESSORS = 20_000
 

@@ -5,12 +5,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from identification.affine_state_space import AffineStateSpace, frozen_matrices
 from identification.arrays import ComplexArray, FloatArray
 from identification.errors import NotIdentifiableError
 from identification.models.recursion import propagate
 from identification.outcome import Outcome, TestResult
 from identification.varying.affine_parameters import AffineSizes
+from identification.varying.affine_state_space import AffineStateSpace, frozen_matrices
 
 
 @dataclass(frozen=True, eq=False)

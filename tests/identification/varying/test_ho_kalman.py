@@ -6,13 +6,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from identification.errors import MisuseError, NotIdentifiableError, RangeError
-from identification.ho_kalman import (
+from identification.varying.ho_kalman import (
     full_realisation,
     largest_entries,
     order_by_singular_values,
     reduced_realisation,
 )
-from identification.sub_markov import BasisSelection, ExactSubMarkov, every_word
+from identification.varying.sub_markov import BasisSelection, ExactSubMarkov, every_word
 from tests.support.random_state_space import random_affine
 
 seeds = st.integers(0, 2**32 - 1)

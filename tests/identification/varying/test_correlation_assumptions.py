@@ -5,7 +5,7 @@ import pytest
 from scipy.signal import lfilter
 from scipy.stats import binom
 
-from identification.correlation_assumptions import (
+from identification.varying.correlation_assumptions import (
     A1,
     A1_NORMAL,
     A2,

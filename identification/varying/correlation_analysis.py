@@ -7,7 +7,7 @@ import numpy as np
 
 from identification.arrays import FloatArray, IntArray
 from identification.errors import NotIdentifiableError, ShapeError
-from identification.sub_markov import BasisSelection, HankelBlocks
+from identification.varying.sub_markov import BasisSelection, HankelBlocks
 
 
 @dataclass(frozen=True, eq=False)

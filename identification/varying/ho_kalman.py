@@ -4,11 +4,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from identification.affine_state_space import AffineStateSpace, Matrices
 from identification.arrays import FloatArray, IntArray
 from identification.errors import NotIdentifiableError, RangeError
 from identification.scheduling import SchedulingVariable
-from identification.sub_markov import BasisSelection, SubMarkovSource, every_word
+from identification.varying.affine_state_space import AffineStateSpace, Matrices
+from identification.varying.sub_markov import BasisSelection, SubMarkovSource, every_word
 
 
 @dataclass(frozen=True, eq=False)

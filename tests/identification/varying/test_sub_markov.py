@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from identification.affine_state_space import AffineStateSpace
-from identification.correlation_analysis import WhiteExcitation
 from identification.errors import NotIdentifiableError, RangeError, ShapeError
-from identification.sub_markov import BasisSelection, ExactSubMarkov, SummedSubMarkov, every_word
-from identification.sub_markov_least_squares import WordRegression
+from identification.varying.affine_state_space import AffineStateSpace
+from identification.varying.correlation_analysis import WhiteExcitation
+from identification.varying.sub_markov import BasisSelection, ExactSubMarkov, SummedSubMarkov, every_word
+from identification.varying.sub_markov_least_squares import WordRegression
 from tests.support.random_state_space import random_affine, white_record
 
 
