@@ -17,9 +17,9 @@ from benchmarks.command import command_line, write_json
 from examples.lightly_damped_structure import SAMPLE_TIME, response, structure
 from identification.arrays import ComplexArray, FloatArray
 from identification.least_squares import levenberg_marquardt
-from identification.likelihood import response_errors
+from identification.lti.likelihood import response_errors
+from identification.lti.rational_start import levy
 from identification.models.rational import RationalStructure
-from identification.rational_start import levy
 from identification.signals import FrequencyResponse
 from identification.subspace.equidistant_subspace import EquidistantSubspace
 from identification.subspace.frequency_subspace import FrequencySubspace

@@ -4,7 +4,7 @@ import numpy as np
 
 from identification.arrays import FloatArray
 from identification.errors import MisuseError, ShapeError
-from identification.filtering import lfilter
+from identification.lti.filtering import lfilter
 from identification.models.rational import RationalStructure
 
 

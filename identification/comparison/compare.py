@@ -17,10 +17,10 @@ from identification.comparison.responses import ComparedResponses, compared_resp
 from identification.errors import MisuseError
 from identification.extension.fit import Fit, fit
 from identification.extension.rows import Rows, effect_tangents, plant_tangents
+from identification.lti.whiteness import orthonormal
 from identification.models.model import Model, require_matching
 from identification.outcome import TestResult
 from identification.places.place import Flow
-from identification.whiteness import orthonormal
 
 BANDS = 6
 

@@ -11,7 +11,7 @@ from identification.comparison.between import flattened
 from identification.comparison.disturbance import find_disturbances, without
 from identification.comparison.noise import NoiseOfMean, noise_of_mean
 from identification.errors import MisuseError
-from identification.response_tests import real_lines
+from identification.lti.response_tests import real_lines
 from identification.signals import FrequencyResponse, Measurement, TimeRecord
 from identification.spectral.local_polynomial import LocalPolynomial
 from identification.spectral.periodic_average import PeriodicAverage, excited_lines

@@ -10,10 +10,10 @@ from identification.comparison.noise import noise_freedom, variance_of_projectio
 from identification.effects.misplaced_point import MisplacedPoint
 from identification.extension.fit import Fit
 from identification.extension.rows import effect_tangents
+from identification.lti.whiteness import orthonormal
 from identification.places.nonlinear import Feedback
 from identification.places.place import Effect
 from identification.places.placed import PlacedEffect, placed
-from identification.whiteness import orthonormal
 
 INVISIBLE = 1e-4
 RECORDS = "it acts on signals, which only records of at least two periods show; these experiments are not all periodic"

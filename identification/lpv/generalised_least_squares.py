@@ -18,12 +18,12 @@ from identification.lpv.stacking import (
     stacked_points,
     whitener,
 )
+from identification.lti.whiteness import chi_square
 from identification.models.model import Model
 from identification.models.physical import RationalForm
 from identification.outcome import Outcome, TestResult
 from identification.scheduling import ParameterDependence
 from identification.signals import FrequencyResponse, Measurement, require_one_channel
-from identification.whiteness import chi_square
 
 
 @dataclass(frozen=True)

@@ -9,14 +9,14 @@ import numpy as np
 from identification.arrays import FloatArray
 from identification.errors import MisuseError, NotIdentifiableError
 from identification.estimates import Estimate, LocalEstimate
-from identification.initial_conditions import InitialConditions, fitted_record
 from identification.least_squares import LeastSquaresSolution, is_singular, levenberg_marquardt
-from identification.likelihood import require_same_sampling
 from identification.lpv.generalised_least_squares import GeneralisedLeastSquares
 from identification.lpv.joint_residuals import JointResiduals
 from identification.lpv.joint_tests import joint_tests
 from identification.lpv.pooled_start import pooled_starts, shrunk_zeros
 from identification.lpv.stacking import asymptotics_advice, stacked_points
+from identification.lti.initial_conditions import InitialConditions, fitted_record
+from identification.lti.likelihood import require_same_sampling
 from identification.lti.multistart import lowest_minimum
 from identification.models.model import Model
 from identification.models.physical import RationalForm

@@ -8,14 +8,14 @@ import numpy as np
 
 from identification.arrays import FloatArray
 from identification.errors import NotIdentifiableError, RangeError
-from identification.initial_conditions import InitialConditions, errors_from, free_parameters, level_errors
 from identification.least_squares import LeastSquaresSolution
-from identification.likelihood import prediction_errors, response_errors
 from identification.lpv.stacking import prior_rows
+from identification.lti.initial_conditions import InitialConditions, errors_from, free_parameters, level_errors
+from identification.lti.likelihood import prediction_errors, response_errors
+from identification.lti.response_tests import real_count, variance_inflation
 from identification.models.model import Model
 from identification.models.physical import RationalForm
 from identification.models.rational import RationalStructure
-from identification.response_tests import real_count, variance_inflation
 from identification.signals import FrequencyResponse, Measurement, TimeRecord
 
 SETTLING = 40

@@ -6,10 +6,10 @@ from identification.arrays import FloatArray
 from identification.least_squares import LeastSquaresSolution
 from identification.lpv.joint_residuals import JointResiduals
 from identification.lpv.stacking import place
+from identification.lti.response_tests import gaussian_errors, real_count
+from identification.lti.whiteness import chi_square, input_independence, orthonormal, whiteness
 from identification.outcome import TestResult
-from identification.response_tests import gaussian_errors, real_count
 from identification.signals import FrequencyResponse, TimeRecord
-from identification.whiteness import chi_square, input_independence, orthonormal, whiteness
 
 
 def joint_tests(residuals: JointResiduals, solution: LeastSquaresSolution) -> tuple[TestResult, ...]:

@@ -6,9 +6,9 @@ import numpy as np
 from scipy.linalg import qr
 
 from identification.arrays import ComplexArray, FloatArray
-from identification.filtering import lfilter
-from identification.likelihood import delayed
 from identification.lti.box_jenkins_start import autoregression, disturbance, high_order_model, reflected
+from identification.lti.filtering import lfilter
+from identification.lti.likelihood import delayed
 from identification.models.hold import without_hold
 from identification.models.physical import RationalForm
 from identification.models.rational import RationalStructure

@@ -7,8 +7,8 @@ import numpy as np
 from scipy.linalg import qr
 
 from identification.arrays import FloatArray
-from identification.filtering import lfilter
-from identification.likelihood import delayed
+from identification.lti.filtering import lfilter
+from identification.lti.likelihood import delayed
 from identification.models.rational import RationalStructure, roots
 from identification.signals import TimeRecord
 

@@ -8,7 +8,9 @@ import numpy as np
 from identification.arrays import FloatArray
 from identification.errors import MisuseError, NotIdentifiableError, RangeError
 from identification.estimates import LocalEstimate
-from identification.initial_conditions import (
+from identification.least_squares import LeastSquaresSolution
+from identification.lti.box_jenkins_start import waves
+from identification.lti.initial_conditions import (
     InitialConditions,
     errors_from,
     errors_only,
@@ -16,16 +18,14 @@ from identification.initial_conditions import (
     free_parameters,
     simulated_output,
 )
-from identification.least_squares import LeastSquaresSolution
-from identification.likelihood import delayed, require_same_sampling
-from identification.lti.box_jenkins_start import waves
+from identification.lti.likelihood import delayed, require_same_sampling
 from identification.lti.multistart import lowest_minimum
+from identification.lti.whiteness import input_independence, whiteness
 from identification.models.model import LocalModel
 from identification.models.rational import RationalStructure
 from identification.outcome import Outcome, TestResult
 from identification.signals import TimeRecord
 from identification.spectral.resolution import require_changing
-from identification.whiteness import input_independence, whiteness
 
 LARGEST = 1e60
 

@@ -9,15 +9,15 @@ from identification.arrays import FloatArray
 from identification.errors import MisuseError, NotIdentifiableError, RangeError
 from identification.estimates import LocalEstimate
 from identification.least_squares import LeastSquaresSolution, levenberg_marquardt
-from identification.likelihood import require_same_sampling, response_errors
+from identification.lti.likelihood import require_same_sampling, response_errors
+from identification.lti.rational_basis import LinearProblem, frequency_scale, rescale
+from identification.lti.rational_start import linear_starts
+from identification.lti.relaxation import relaxation_fit, require_relaxation
+from identification.lti.response_tests import lack_of_fit, neighbour_correlation, real_count, variance_inflation
 from identification.models.model import LocalModel
 from identification.models.physical import RationalForm
 from identification.models.rational import RationalStructure
 from identification.outcome import Outcome
-from identification.rational_basis import LinearProblem, frequency_scale, rescale
-from identification.rational_start import linear_starts
-from identification.relaxation import relaxation_fit, require_relaxation
-from identification.response_tests import lack_of_fit, neighbour_correlation, real_count, variance_inflation
 from identification.signals import FrequencyResponse
 
 LINES_FOR_DELAY = 400

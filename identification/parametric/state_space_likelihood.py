@@ -10,15 +10,15 @@ from numpy.typing import ArrayLike
 from identification.arrays import ComplexArray, FloatArray
 from identification.errors import MisuseError, NotIdentifiableError
 from identification.least_squares import LeastSquaresSolution, levenberg_marquardt
+from identification.lti.response_tests import real_count, variance_inflation
+from identification.lti.whiteness import chi_square
 from identification.outcome import Outcome, TestResult
 from identification.parameter_varying import ParameterVaryingStateSpace
 from identification.parametric.pole_guarantee import fine_grid, grid
 from identification.parametric.state_space_residuals import StateSpaceParameters, residual_and_jacobian, whitener
 from identification.parametric.triangular import triangular_factor
 from identification.pole_regions.inequality import PoleRegion
-from identification.response_tests import real_count, variance_inflation
 from identification.signals import FrequencyResponse
-from identification.whiteness import chi_square
 
 PRECISION = 3e-5  # the search ends when the misfit could fall by less than this squared
 EFFECTIVE = 1e-7  # smaller changes of the response, relative to the largest, are taken for none

@@ -8,7 +8,7 @@ from scipy.special import fdtri
 
 from identification.arrays import BoolArray, ComplexArray, FloatArray
 from identification.errors import MisuseError, RangeError
-from identification.response_tests import real_lines
+from identification.lti.response_tests import real_lines
 from identification.signals import FrequencyResponse, TimeRecord
 from identification.spectral.resolution import converter_step, repeated_error, require_changing
 

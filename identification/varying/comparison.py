@@ -8,6 +8,7 @@ import numpy as np
 from identification.arrays import BoolArray, ComplexArray, FloatArray
 from identification.comparison.lack_of_fit import lack_of_fit
 from identification.errors import MisuseError
+from identification.lti.whiteness import chi_square, orthonormal
 from identification.outcome import TestResult
 from identification.varying.affine_estimate import AffineEstimate
 from identification.varying.affine_parameters import AffineSizes
@@ -16,7 +17,6 @@ from identification.varying.harmonic_noise import LEAST_LINES
 from identification.varying.periodic_residuals import PeriodicResiduals
 from identification.varying.records import VaryingRecord, steady_periods
 from identification.varying.reproduction import reproduced
-from identification.whiteness import chi_square, orthonormal
 
 BANDS = 6
 LAGS = 20

@@ -3,8 +3,8 @@
 import numpy as np
 
 from identification.arrays import FloatArray
+from identification.lti.whiteness import chi_square
 from identification.outcome import TestResult
-from identification.whiteness import chi_square
 
 LAGS = 20
 BROKEN_BELOW = 1e-3

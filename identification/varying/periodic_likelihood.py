@@ -8,8 +8,8 @@ import numpy as np
 from identification.arrays import FloatArray
 from identification.errors import MisuseError, NotIdentifiableError, RangeError, ShapeError
 from identification.least_squares import LeastSquaresSolution, levenberg_marquardt
+from identification.lti.response_tests import variance_inflation
 from identification.outcome import Outcome
-from identification.response_tests import variance_inflation
 from identification.scheduling import SchedulingVariable
 from identification.varying.affine_estimate import AffineEstimate
 from identification.varying.affine_parameters import AffineSizes, balanced, stated_order

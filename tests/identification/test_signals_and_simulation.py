@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from identification.errors import MisuseError, RangeError, ShapeError
-from identification.likelihood import residual_and_jacobian
+from identification.lti.likelihood import residual_and_jacobian
 from identification.lti.rational_fit import RationalFit
+from identification.lti.rational_start import levy
 from identification.models.rational import RationalStructure
-from identification.rational_start import levy
 from identification.signals import FrequencyResponse, TimeRecord
 from identification.simulation import simulate
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from identification.errors import MisuseError
-from identification.likelihood import prediction_errors
+from identification.lti.likelihood import prediction_errors
 from identification.models.model import Model
 from identification.signals import TimeRecord
 from identification.simulation import simulate

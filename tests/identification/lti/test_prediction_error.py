@@ -6,8 +6,8 @@ from scipy import stats
 from scipy.signal import lfilter
 
 from identification.errors import MisuseError, RangeError
-from identification.initial_conditions import errors_from
 from identification.least_squares import levenberg_marquardt
+from identification.lti.initial_conditions import errors_from
 from identification.lti.prediction_error import PredictionError
 from identification.models.rational import RationalStructure
 from identification.signals import TimeRecord

@@ -9,8 +9,8 @@ from scipy import stats
 from identification.arrays import FloatArray
 from identification.estimates import LocalEstimate
 from identification.lti.rational_fit import RationalFit
+from identification.lti.response_tests import variance_inflation
 from identification.models.rational import RationalStructure
-from identification.response_tests import variance_inflation
 from identification.signals import FrequencyResponse, TimeRecord
 from identification.simulation import simulate
 from identification.spectral.local_polynomial import LocalPolynomial

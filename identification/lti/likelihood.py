@@ -4,7 +4,7 @@ import numpy as np
 
 from identification.arrays import FloatArray
 from identification.errors import MisuseError
-from identification.filtering import lfilter
+from identification.lti.filtering import lfilter
 from identification.models.physical import RationalForm
 from identification.models.rational import RationalStructure
 from identification.signals import FrequencyResponse, Measurement, TimeRecord, require_one_channel

@@ -5,7 +5,7 @@ import numpy as np
 from identification.arrays import ComplexArray, FloatArray
 from identification.errors import MisuseError
 from identification.least_squares import LeastSquaresSolution, levenberg_marquardt
-from identification.likelihood import response_errors
+from identification.lti.likelihood import response_errors
 from identification.models.rational import RationalStructure
 from identification.outcome import Outcome
 from identification.signals import FrequencyResponse

@@ -6,9 +6,8 @@ import numpy as np
 
 from identification.arrays import ComplexArray, FloatArray
 from identification.errors import RangeError
-from identification.likelihood import require_same_sampling
-from identification.models.rational import RationalStructure
-from identification.rational_basis import (
+from identification.lti.likelihood import require_same_sampling
+from identification.lti.rational_basis import (
     LinearProblem,
     as_zeta,
     frequency_scale,
@@ -19,6 +18,7 @@ from identification.rational_basis import (
     rescale,
     stabilised,
 )
+from identification.models.rational import RationalStructure
 from identification.signals import FrequencyResponse
 
 DELAY_ITERATIONS = 6

@@ -5,8 +5,8 @@ from scipy.linalg import qr
 from scipy.special import chdtrc
 
 from identification.arrays import FloatArray
-from identification.filtering import lfilter
-from identification.likelihood import delayed
+from identification.lti.filtering import lfilter
+from identification.lti.likelihood import delayed
 from identification.models.rational import RationalStructure
 from identification.outcome import TestResult
 

@@ -8,8 +8,8 @@ from scipy.linalg import qr
 
 from identification.arrays import FloatArray
 from identification.errors import NotIdentifiableError
-from identification.filtering import lfilter
-from identification.likelihood import delayed, prediction_errors
+from identification.lti.filtering import lfilter
+from identification.lti.likelihood import delayed, prediction_errors
 from identification.models.rational import RationalStructure
 from identification.signals import TimeRecord
 

@@ -5,11 +5,11 @@ import pytest
 from scipy import stats
 from scipy.signal import lfilter
 
-from identification.initial_conditions import errors_from
+from identification.lti.initial_conditions import errors_from
 from identification.lti.prediction_error import PredictionError
+from identification.lti.whiteness import chi_square, input_independence, whiteness
 from identification.models.rational import RationalStructure
 from identification.signals import TimeRecord
-from identification.whiteness import chi_square, input_independence, whiteness
 
 GAIN = RationalStructure(0, 0, sample_time=1.0)
 

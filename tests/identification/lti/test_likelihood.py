@@ -6,8 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from identification.errors import MisuseError
-from identification.initial_conditions import errors_from, errors_only, simulated_output
-from identification.likelihood import delayed, prediction_errors, residual_and_jacobian, response_errors
+from identification.lti.initial_conditions import errors_from, errors_only, simulated_output
+from identification.lti.likelihood import delayed, prediction_errors, residual_and_jacobian, response_errors
 from identification.models.rational import RationalStructure
 from identification.signals import FrequencyResponse, TimeRecord
 from identification.simulation import simulate
