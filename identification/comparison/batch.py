@@ -25,15 +25,16 @@ class Batch:
     `points` (M, s); `omega` (K,) rad/s; `inputs`, `outputs` (M, K) in the units of the plant; `variances` (M, K)
     E|n|² of the noise on `outputs` (twice that of the real number at ω = 0 and the Nyquist frequency), infinite for
     lines that are not compared; `classes` (M, K) of EXCITED, ODD, EVEN; `freedom` (K,) real degrees of freedom of
-    each σ̂², `raw_freedom` those that one line brings by itself (infinite where σ is known exactly); windows of
-    2 `half_width` + 1 lines were pooled. `signals` (M, L) the input over one period, None for frequency responses.
-    `ends` (M, 2, L): what correlated noise at the ends of a record does to the mean period, see `noise.NoiseOfMean`.
-    `scaled`: False when only the ratios of the variances are known. `members`: places in the user's list. `logged`:
-    quantities (M,) that were written down beside the scheduling variables, by their names. `disturbances`: of each
-    record, taken off the outputs; `smoothed`: whether the responses stand for records
-    that do not repeat; `notes`: what else is to be said of measurements, by their place in the list.
-    `held`: how models in continuous time see the input, None where it is band limited; `hold_stated`: that was said.
-    `channels`: what input and output are.
+    each σ̂², `raw_freedom` those that one line brings by itself (infinite where σ is known exactly); windows of 2
+    `half_width` + 1 lines were pooled. `signals` (M, L) the input over one period, None for frequency responses.
+    `nuisance` (M, n, L): signals of any size in the mean period, such as a slow trend, which are not compared; rows
+    of zeros where there are fewer. `ends` (M, 2, L): what correlated noise at the ends of a record does to the mean
+    period, see `noise.NoiseOfMean`. `scaled`: False when only the ratios of the variances are known. `members`:
+    places in the user's list. `logged`: quantities (M,) that were written down beside the scheduling variables, by
+    their names. `disturbances`: of each record, taken off the outputs; `smoothed`: whether the responses stand for
+    records that do not repeat; `notes`: what else is to be said of measurements, by their place in the list.
+    `held`: how models in continuous time see the input, None where it is band limited; `hold_stated`: that was
+    said. `channels`: what input and output are.
     """
 
     points: FloatArray
@@ -49,6 +50,7 @@ class Batch:
     raw_freedom: float = np.inf
     half_width: int = 0
     ends: FloatArray | None = None
+    nuisance: FloatArray | None = None
     scaled: bool = True
     between: tuple[FloatArray, ...] = field(default=())
     disturbances: tuple[tuple[Disturbance, ...], ...] = ()
@@ -87,7 +89,8 @@ class Batch:
     @property
     def row_count(self) -> int:
         """How many real numbers are compared."""
-        return int(self.compared.sum())
+        taken = 0 if (found := self._of_nuisance) is None else int(np.sum(found[1] < 0))
+        return int(self.compared.sum()) - taken
 
     def whiten(self, spectra: ComplexArray) -> FloatArray:
         """Spectra (…, M, K) as uncorrelated rows of unit variance (…, M·2·K): real, then imaginary parts by record."""
@@ -107,10 +110,18 @@ class Batch:
 
     @cached_property
     def _jumps(self) -> tuple[FloatArray, FloatArray] | None:
-        """Unit directions q (M, 2, 2K) in which weighted noise has the variance v, and v^−½ − 1 (M, 2).
+        """Unit directions q (M, n, 2K) in which weighted noise has the variance v, and v^−½ − 1 (M, n).
 
-        −(ℓ ℓ'ᵀ + ℓ' ℓᵀ) = ½ (ℓ − ℓ')(ℓ − ℓ')ᵀ − ½ (ℓ + ℓ')(ℓ + ℓ')ᵀ; None where noise is nearly white.
+        −(ℓ ℓ'ᵀ + ℓ' ℓᵀ) = ½ (ℓ − ℓ')(ℓ − ℓ')ᵀ − ½ (ℓ + ℓ')(ℓ + ℓ')ᵀ, and infinite v in the directions of `nuisance`;
+        None where noise is nearly white and nothing is a nuisance.
         """
+        parts = [part for part in (self._of_ends, self._of_nuisance) if part is not None]
+        if not parts:
+            return None
+        return np.concatenate([part[0] for part in parts], axis=1), np.concatenate([part[1] for part in parts], axis=1)
+
+    @property
+    def _of_ends(self) -> tuple[FloatArray, FloatArray] | None:
         if self.ends is None:
             return None
         jumps = np.stack([self.ends[:, 0] - self.ends[:, 1], self.ends[:, 0] + self.ends[:, 1]]) * np.sqrt(0.5)
@@ -120,6 +131,15 @@ class Batch:
             return None
         variance = np.maximum(1 + excess * np.array([1.0, -1.0]), SMALLEST)
         return rows / np.sqrt(np.maximum(excess, np.finfo(float).tiny))[..., None], variance**-0.5 - 1
+
+    @property
+    def _of_nuisance(self) -> tuple[FloatArray, FloatArray] | None:
+        if self.nuisance is None or not self.nuisance.size:
+            return None
+        rows = np.moveaxis(self._weighted(self.spectrum(np.moveaxis(self.nuisance, 1, 0))), 0, 1)
+        _, sizes, directions = np.linalg.svd(rows, full_matrices=False)
+        kept = sizes > 1e-9 * np.maximum(sizes[:, :1], np.finfo(float).tiny)
+        return directions * kept[..., None], -1.0 * kept
 
     @cached_property
     def measured(self) -> FloatArray:

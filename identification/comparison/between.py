@@ -1,26 +1,49 @@
 """What lies between the harmonics of a periodic record: noise, and lines of machines nearby."""
 
 import numpy as np
-from scipy.ndimage import uniform_filter1d
+from scipy.ndimage import median_filter, uniform_filter1d
 from scipy.special import fdtrc
 
 from identification.arrays import FloatArray
 from identification.outcome import TestResult
 
 NEIGHBOURS = 15
-STEEP = 4.0
+LOWEST = 60
+CORNERS = (0.0, 1.5, 3.0, 6.0, 12.0, 24.0, 48.0)
+FLOORS = (0.0, 1.0, 4.0, 16.0, 64.0)
+WANDERING, WORTH = 3.0, 6.0
 
 
-def flattened(powers: FloatArray, frequency: FloatArray) -> FloatArray:
-    """Powers (n,) at frequencies (n,), cycles a sample; those of the differences of samples where that is flatter.
+def flattened(powers: FloatArray, lines: FloatArray, length: int) -> FloatArray:
+    """Powers (n,) at the lines (n,) of a record of so many samples; those of its differences where it wanders.
 
-    A sine wave stays one; a level that wanders, whose spectrum falls like 1/ω², becomes white. It is taken to wander
-    where the median of the lowest lines is `STEEP` times that of the next.
+    A sine wave stays one; a level that wanders, whose spectrum falls like 1/ω², becomes white.
     """
-    low, next_ = powers[:NEIGHBOURS], powers[NEIGHBOURS : 3 * NEIGHBOURS]
-    if len(next_) < 2 * NEIGHBOURS or np.median(low) < STEEP * np.median(next_):
+    if corner(powers, lines) > WANDERING:
         return powers
-    return np.asarray(powers * np.sin(np.pi * frequency) ** 2)
+    return np.asarray(powers * np.sin(np.pi * lines / length) ** 2)
+
+
+def corner(powers: FloatArray, lines: FloatArray) -> float:
+    """The line below which the spectrum of a level that comes back flattens out; 0: it never does, ∞: it is white.
+
+        S(k) ∝ 1/(k² + c²) + b,   by Whittle's likelihood of powers (n,) at the lowest lines (n,), over c and b
+
+    Single lines that stand out are cut to ten times the median around them [Whittle1953].
+    """
+    k, x = lines[:LOWEST], powers[:LOWEST]
+    if len(k) < LOWEST or not np.all(x > 0):
+        return np.inf
+    x = np.minimum(x, 10 * median_filter(x, 2 * NEIGHBOURS // 2 + 1, mode="nearest"))
+    fits = [(_whittle(x, np.ones(len(k))), np.inf)]
+    for c in CORNERS:
+        falling = 1 / (k**2 + c**2)
+        fits += [(_whittle(x, falling + b * falling[-1]) + WORTH, c) for b in FLOORS]
+    return min(fits)[1]
+
+
+def _whittle(powers: FloatArray, shape: FloatArray) -> float:
+    return float(len(powers) * np.log(np.mean(powers / shape)) + np.sum(np.log(shape)))
 
 
 def standing_out(powers: FloatArray) -> FloatArray:

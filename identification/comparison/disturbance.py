@@ -77,7 +77,7 @@ def _strongest(signal: FloatArray, count: int, known: FloatArray) -> tuple[int, 
     for k in known:
         free &= abs(np.arange(len(powers)) - k) > 1.5
     lines = np.flatnonzero(free)
-    flat = flattened(powers[free], lines / length)
+    flat = flattened(powers[free], lines.astype(np.float64), length)
     return int(lines[np.argmax(standing_out(flat))]), strongest_line(flat)
 
 

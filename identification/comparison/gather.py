@@ -10,6 +10,14 @@ from identification.comparison.batch import EVEN, EXCITED, ODD, Batch
 from identification.comparison.between import flattened
 from identification.comparison.disturbance import find_disturbances, without
 from identification.comparison.noise import NoiseOfMean, noise_of_mean
+from identification.comparison.wandering import (
+    left_in_mean,
+    slow_trend,
+    steady_count,
+    wandering_noise,
+    wanders,
+    without_trend,
+)
 from identification.errors import MisuseError
 from identification.lti.response_tests import real_lines
 from identification.signals import FrequencyResponse, Measurement, TimeRecord
@@ -18,6 +26,8 @@ from identification.spectral.periodic_average import PeriodicAverage, excited_li
 from identification.spectral.resolution import check_changing, converter_step, repeated_error
 
 ROUNDS = 0.1
+SLOW = "the output drifts slowly over the record; a smooth trend was taken off, and its mean value is not compared"
+WALKS = "the level of the output wanders like a random walk; it counts as noise, and the mean value is not compared"
 CLAMPED = (
     "the spectrum of the noise is too steep to be told from how the periods differ; its variance was held at a"
     " thousandth of that around it at some lines"
@@ -30,8 +40,9 @@ def gather(
     """Batches of the experiments, those on the same grid together, in the order in which the grids first occur.
 
     Periodic records give their mean spectrum at all lines of the period, excited or not, with the variance from how
-    the periods differ, pooled over fifteen lines, sine waves between the lines taken off; other records the frequency
-    response that the local polynomial method finds. `mean_value` keeps the line at ω = 0 of periodic records.
+    the periods differ, pooled over fifteen lines, slow trends and sine waves between the lines taken off; other
+    records the frequency response that the local polynomial method finds. `mean_value` keeps the line at ω = 0 of
+    periodic records.
     `logged`: for each experiment the quantities written down beside the scheduling variables; those of all are kept.
     """
     if not experiments:
@@ -82,6 +93,7 @@ def _joined(group: list[Batch]) -> Batch:
     }
     signals = None if first.signals is None else np.concatenate([p.signals for p in group if p.signals is not None])
     ends = None if first.ends is None else np.concatenate([part.ends for part in group if part.ends is not None])
+    nuisances = [part.nuisance for part in group if part.nuisance is not None]
     between = tuple(b for part in group for b in part.between)
     return Batch(
         omega=first.omega,
@@ -91,6 +103,7 @@ def _joined(group: list[Batch]) -> Batch:
         raw_freedom=first.raw_freedom,
         half_width=first.half_width,
         ends=ends,
+        nuisance=_padded(nuisances) if nuisances else None,
         scaled=first.scaled,
         smoothed=first.smoothed,
         held=first.held,
@@ -102,6 +115,12 @@ def _joined(group: list[Batch]) -> Batch:
         channels=first.channels,
         **stacked,
     )
+
+
+def _padded(signals: Sequence[FloatArray]) -> FloatArray:
+    """Arrays (m, n, L) one after another, (M, n, L), rows of zeros where one has fewer."""
+    most = max(one.shape[1] for one in signals)
+    return np.concatenate([np.pad(one, ((0, 0), (0, most - one.shape[1]), (0, 0))) for one in signals])
 
 
 def _one(m: int, data: Measurement, mean_value: bool) -> Batch:
@@ -149,18 +168,22 @@ def _of_response(m: int, data: FrequencyResponse) -> Batch:
 def _of_periodic(m: int, record: TimeRecord, mean_value: bool) -> Batch:
     period = record.period
     assert period is not None
-    count = len(PeriodicAverage().steady_spectra(record)[1])
-    disturbances = find_disturbances(record, count)
+    trend = slow_trend(record, record.period_count)
+    level = record if trend is None else without_trend(record, trend.signal)
+    count = steady_count(level, trend is None and wanders(level, record.period_count))
+    disturbances = find_disturbances(level, count)
+    clean = without(level, disturbances)
+    walks = trend is None and wanders(clean, count)
     estimator = PeriodicAverage(drop_periods=record.period_count - count)
-    u, y = (spectra / period for spectra in estimator.steady_spectra(without(record, disturbances)))
+    u, y = (spectra / period for spectra in estimator.steady_spectra(clean))
     excited = excited_lines(u, estimator.threshold)
     omega = np.asarray(2 * np.pi * np.fft.rfftfreq(period, record.sample_time), dtype=np.float64)
     real = real_lines(omega, record.sample_time)
-    noise = _noise(u, y, excited, real)
+    noise = _noise(u, y, excited, real, walks)
     step = converter_step(record.output)
     rounding = repeated_error(step, float(np.sqrt(np.sum(np.var(y, axis=0, ddof=1) * np.where(real, 1, 2)))))
     variances = noise.variance + rounding / period * np.where(real, 2.0, 1.0)
-    if not mean_value:
+    if not mean_value or trend is not None:
         variances[0] = np.inf
     mean_input = np.where(excited, u.mean(axis=0), 0.0)
     return Batch(
@@ -179,10 +202,14 @@ def _of_periodic(m: int, record: TimeRecord, mean_value: bool) -> Batch:
         raw_freedom=2.0 * (count - 1),
         half_width=noise.half_width,
         ends=noise.ends[None],
-        between=(between_harmonics(record, count),),
+        nuisance=left_in_mean(period, 0 if trend is None else trend.degree, count, walks)[None],
+        between=(between_harmonics(level, count),),
         disturbances=(disturbances,),
         channels=record.channels,
-        notes=_notes(m, noise, step if rounding > ROUNDS * float(np.median(noise.variance)) * period else 0.0),
+        notes=(
+            *_notes(m, noise, step if rounding > ROUNDS * float(np.median(noise.variance)) * period else 0.0),
+            *([(m, SLOW)] if trend is not None else [(m, WALKS)] if walks else []),
+        ),
     )
 
 
@@ -195,10 +222,10 @@ def _notes(m: int, noise: NoiseOfMean, step: float) -> tuple[tuple[int, str], ..
     return tuple((m, text) for text in texts)
 
 
-def _noise(u: ComplexArray, y: ComplexArray, excited: BoolArray, real: BoolArray) -> NoiseOfMean:
+def _noise(u: ComplexArray, y: ComplexArray, excited: BoolArray, real: BoolArray, walks: bool) -> NoiseOfMean:
     """Of the mean of E = Y − Ĝ U: noise on the input counts where it is excited."""
     ratio = np.where(excited, y.mean(axis=0) / np.where(excited, u.mean(axis=0), 1.0), 0.0)
-    found = noise_of_mean(y - ratio * u, real)
+    found = (wandering_noise if walks else noise_of_mean)(y - ratio * u, real)
     smallest = 1e-26 * float(np.mean(abs(y) ** 2)) + float(np.finfo(np.float64).tiny)
     return replace(found, variance=np.maximum(found.variance, smallest))
 
@@ -218,4 +245,4 @@ def between_harmonics(record: TimeRecord, count: int) -> FloatArray:
     signal = record.output[first : first + count * record.period]
     lines = abs(np.fft.rfft(signal) / len(signal)) ** 2
     free = np.flatnonzero(np.arange(len(lines)) % count)
-    return flattened(np.asarray(lines[free], dtype=np.float64), free / len(signal))
+    return flattened(np.asarray(lines[free], dtype=np.float64), free.astype(np.float64), len(signal))
