@@ -1,10 +1,13 @@
 """Upload forms refuse what JSON bodies refuse: fields that do not exist, and fields that are given twice."""
 
-from typing import get_origin
+from typing import Any, TypeVar, get_origin
 
 from fastapi import Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.routing import APIRoute
+from pydantic import BaseModel, ValidationError
+
+Document = TypeVar("Document", bound=BaseModel)
 
 
 async def known_fields(request: Request) -> None:
@@ -22,6 +25,15 @@ async def known_fields(request: Request) -> None:
             failures.append(_failure(name, "repeated", "the field is given more than once; give it once"))
     if failures:
         raise RequestValidationError(failures, body=dict.fromkeys(names, ""))
+
+
+def checked_form(kind: type[Document], form: dict[str, Any]) -> Document:
+    """The fields of a form as a document; raises RequestValidationError."""
+    try:
+        return kind.model_validate(form)
+    except ValidationError as error:
+        failures = [{**failure, "loc": ("body", *failure["loc"])} for failure in error.errors()]
+        raise RequestValidationError(failures, body=form) from None
 
 
 def _failure(name: str, kind: str, message: str) -> dict[str, object]:

@@ -127,13 +127,19 @@ def _signal(parts: Sequence[Part], role: str, said: Said) -> Part | None:
         return only(stated, role)
     if by_plant := _like_the_plants(parts, role, said):
         return by_plant
-    if named := only(having(parts, role), role):
+    if named := only([part for part in having(parts, role) if _may_be(part, said.signal(role).unit)], role):
         return named
     wanted, other = said.signal(role).unit, said.signal("output" if role == "input" else "input").unit
     if not wanted or units.conversion(wanted, other) is not None:
         return None
     fitting = [part for part in _candidates(parts) if part.unit and units.conversion(part.unit, wanted) is not None]
     return fitting[0] if len(fitting) == 1 else None
+
+
+def _may_be(part: Part, wanted: str) -> bool:
+    """Whether the unit of a column does not speak against a signal of the plant: U in volts is no force."""
+    known = units.parsed(part.unit) is not None and units.parsed(wanted) is not None and not part.name.loose
+    return not known or units.conversion(part.unit, wanted) is not None
 
 
 def _like_the_plants(parts: Sequence[Part], role: str, said: Said) -> Part | None:

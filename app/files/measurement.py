@@ -71,13 +71,14 @@ def read_measurement(content: bytes, kind: str, stated: Statements) -> Measureme
 
 def read_measurements(content: bytes, kind: str, stated: Statements) -> list[Reading]:
     """The measurements in a file: one, or one for each operating point in the lines of a long table."""
+    return of_tables(read_tables(content, kind), stated.group, lambda table: read_table(table, stated))
+
+
+def read_table(table: Table, stated: Statements) -> list[Reading]:
+    """The measurements in a table; raises MisuseError."""
     known = stated.said
-
-    def understood(table: Table) -> list[Reading]:
-        chosen = chosen_lines(spread(table), stated.rows)
-        return [measurement(part, one, known) for one, part in _points(chosen, stated)]
-
-    return of_tables(read_tables(content, kind), stated.group, understood)
+    chosen = chosen_lines(spread(table), stated.rows)
+    return [measurement(part, one, known) for one, part in _points(chosen, stated)]
 
 
 def of_tables(tables: Sequence[Table], group: str, understood: Callable[[Table], Made]) -> Made:

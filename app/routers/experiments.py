@@ -4,12 +4,10 @@ import json
 from typing import Annotated, Any, get_args
 
 from fastapi import APIRouter, Depends, File, Form, Query, Response, UploadFile
-from fastapi.exceptions import RequestValidationError
-from pydantic import ValidationError
 
 from app.dependencies import ContainerDependency, Cursor, IdempotencyKey, Limit, ResourcesDependency
 from app.files.stored import Format
-from app.forms import known_fields
+from app.forms import checked_form, known_fields
 from app.routers.downloads import file_answer, file_response
 from app.schemas.conditions import InputHold
 from app.schemas.experiments import (
@@ -106,7 +104,8 @@ def upload_experiment(
     A record along varying scheduling states no operatingPoint; it has u, y and p (or u1, u2, … and the names of the
     scheduling variables) and time.
     """
-    stated = _checked(
+    stated = checked_form(
+        FileFields,
         {
             "plantId": plant_id,
             "operatingPoint": operating_point,
@@ -127,7 +126,7 @@ def upload_experiment(
             "outputLevel": output_level,
             "inputHold": input_hold,
             "feedback": feedback,
-        }
+        },
     )
     record = experiments.submit_file(container, stated, file.file.read(), file.filename or "", key)
     return accepted(record, response)
@@ -139,14 +138,6 @@ def _json(text: str) -> Any:
         return json.loads(text)
     except (ValueError, RecursionError):
         return text
-
-
-def _checked(form: dict[str, Any]) -> FileFields:
-    try:
-        return FileFields.model_validate(form)
-    except ValidationError as error:
-        failures = [{**failure, "loc": ("body", *failure["loc"])} for failure in error.errors()]
-        raise RequestValidationError(failures, body=form) from None
 
 
 @router.get("")

@@ -82,6 +82,29 @@ def test_columns_with_other_names_are_chosen(here: Visit) -> None:
     assert "p = 2" in row(here, "named_otherwise_at_2")
 
 
+def test_a_question_is_answered_in_the_preview_for_all_files(here: Visit) -> None:
+    response = {"Frequency": np.arange(1, 40) / 100, "Zre": np.ones(39), "-Zim": np.linspace(0.1, 0.2, 39)}
+    drop(here, {f"asked_at_{k}.csv": csv_writer.write(response) for k in (1, 2)})
+    page = here.page
+    first, second = page.locator("#incoming form").nth(0), page.locator("#incoming form").nth(1)
+    for card in (first, second):
+        card.get_by_text("states no unit").wait_for()
+        assert "minus imaginary part" in card.get_by_role("row", name="-Zim").inner_text()
+    first.get_by_label("unit of Frequency").fill("Hz")
+    first.get_by_label("unit of Frequency").press("Tab")
+    first.get_by_text("The response, thinned.").wait_for()
+    first.get_by_role("button", name="Use these units for all files").click()
+    second.get_by_text("The response, thinned.").wait_for()
+    assert here.violations() == []
+    page.get_by_role("button", name="Bring in all 2 files").click()
+    for k in (1, 2):
+        assert f"p = {k}" in row(here, f"asked_at_{k}")
+    drop(here, {"later_at_3.csv": csv_writer.write(response)})
+    page.get_by_text("What was said of the plant's last file is used again.").wait_for()
+    page.get_by_role("button", name="Bring in").click()
+    assert "p = 3" in row(here, "later_at_3")
+
+
 def test_a_broken_file_shows_its_problem_at_the_field(here: Visit) -> None:
     drop(here, {"broken.csv": b"time,input,output\n0,1,2\n1,one,3\n"})
     page = here.page

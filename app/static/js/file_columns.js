@@ -2,16 +2,10 @@
 
 // What a column may be, as the service calls it and in words.
 export const LABELS = {
-  time: "time (s)", input: "input", output: "output", frequenciesRadPerSecond: "frequency (rad/s)", frequencyHz: "frequency (Hz)",
-  response: "response (complex)", responseRe: "response: real part", responseIm: "response: imaginary part", variance: "variance",
+  time: "time (s)", input: "input", output: "output", frequency: "frequency", frequenciesRadPerSecond: "frequency (rad/s)", frequencyHz: "frequency (Hz)",
+  response: "response (complex)", responseRe: "response: real part", responseIm: "response: imaginary part", "-responseIm": "response: minus imaginary part",
+  magnitude: "magnitude", phase: "phase", variance: "variance", deviation: "standard deviation", coherence: "coherence", repeat: "number of the repeat", ignored: "left out",
 };
-// Names that the service understands by itself, without case, spaces, dashes and underscores.
-const KNOWN = {
-  time: ["time", "t", "timeseconds", "times"], input: ["input", "u", "inputs"], output: ["output", "y", "outputs"],
-  frequenciesRadPerSecond: ["frequenciesradpersecond", "frequencyradpersecond", "frequencies", "frequency", "omega", "w"],
-  frequencyHz: ["frequencieshertz", "frequencyhertz", "frequencyhz", "freqhz", "frequencieshz", "hz"],
-};
-
 const ENDINGS = /\.(json|csv|tsv|txt|dat|asc|prn|data|tab|dta|mpt|z|zpw|npz|mat|xlsx|xlsm|parquet|pq|feather|arrow|ipc|h5|hdf5|hdf|[szy]\dp|ts|uff|unv|uf58|bunv|tdms|mf4|mdf)$/i;
 
 export const formatOf = (name) => ENDINGS.exec(name)?.[1].toLowerCase() ?? null;
@@ -44,12 +38,6 @@ function membersOf(data) {
     position += 46 + length + data.getUint16(position + 30, true) + data.getUint16(position + 32, true);
   }
   return names;
-}
-
-// The column that will be taken for a meaning by its name; "" when there is none.
-export function guess(meaning, columns) {
-  const plain = (name) => name.toLowerCase().replace(/[\s_\-()/]/g, "");
-  return columns.find((name) => KNOWN[meaning]?.includes(plain(name))) ?? "";
 }
 
 // An operating point in the name of a file, such as 5.5 in "noise_at_5.5.csv"; null when there is none.

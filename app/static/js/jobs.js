@@ -8,7 +8,7 @@ import { problemBox } from "./problems.js";
 
 const FINAL = ["succeeded", "failed", "cancelled"];
 export const KINDS = {
-  experiment: "Reading an experiment", design: "Designing experiments", signals: "Making signals",
+  experiment: "Reading an experiment", preview: "Looking into a file", design: "Designing experiments", signals: "Making signals",
   identification: "Identifying a model", stateSpaceIdentification: "Identifying a state-space model",
   example: "Making an example", measurement: "Playing signals on the simulated plant", comparison: "Comparing model and measurements", diagnosis: "Looking for what is missing", extension: "Adding an effect", report: "Drawing the report", staircase: "Adding effects until only noise is left",
 };

@@ -46,7 +46,9 @@ function take(files, designs) {
       byId("incoming").append(message("problem", `${file.name}: files of this kind are not read; .csv, .txt, .npz, .mat, .xlsx, .h5, .json and others are.`));
       continue;
     }
-    const card = new FileCard(file, described, designs, { onMade: refresh, onGone: () => { cards.delete(card); drawAll(); } });
+    const card = new FileCard(file, described, designs, {
+      onMade: refresh, onGone: () => { cards.delete(card); drawAll(); }, forAll: (from, units) => [...cards].filter((one) => one !== from).forEach((one) => one.take(units)),
+    });
     cards.add(card);
     byId("incoming").append(card.element);
   }
