@@ -6,11 +6,8 @@ import numpy as np
 
 from identification.arrays import FloatArray
 from identification.confidence import covariance_root
-from identification.errors import MisuseError, RangeError
+from identification.errors import RangeError
 from identification.models.model import Model
-from identification.models.recursion import propagate
-from identification.parameter_varying import ParameterVaryingStateSpace
-from identification.varying.affine_estimate import AffineEstimate
 
 UNSTABLE = "the simulated output grows beyond all numbers: the model is unstable along this scheduling"
 
@@ -21,15 +18,6 @@ class Simulation:
 
     output: FloatArray
     deviation: FloatArray | None
-
-
-def simulate_affine(estimate: AffineEstimate, input: FloatArray, scheduling: FloatArray) -> Simulation:
-    """An affine state-space model for u (N, n_u) along p (N, n_p); raises ShapeError and RangeError."""
-    output = estimate.model.simulate(input, scheduling)
-    if estimate.covariance is None:
-        return Simulation(output, None)
-    covariance = estimate.output_covariance(input, scheduling)
-    return Simulation(output, np.sqrt(np.maximum(np.einsum("tyy->ty", covariance), 0.0)))
 
 
 def simulate_along(
@@ -53,17 +41,3 @@ def simulate_along(
         moved = model.dependence.coefficients(model.direction(direction), scheduling)
         variance += found.change(moved[:, : model.structure.n_plant]) ** 2
     return Simulation(found.output, np.sqrt(variance))
-
-
-def simulate_state_space(model: ParameterVaryingStateSpace, input: FloatArray, scheduling: FloatArray) -> Simulation:
-    """A state-space model in discrete time, its matrices following p (N, s) at once, for u (N, n_u); no deviation."""
-    if model.sample_time is None:
-        raise MisuseError("only models in discrete time are simulated along p(t)", "model")
-    at = model.at(scheduling)
-    forcing = (at.b @ input[:, :, None])[..., 0]
-    with np.errstate(over="ignore", invalid="ignore"):
-        x = propagate(at.a, forcing, np.zeros(model.order))[:-1]
-        y = (at.c @ x[..., None] + at.d @ input[:, :, None])[..., 0]
-    if not np.all(np.isfinite(y)):
-        raise RangeError(UNSTABLE, "scheduling")
-    return Simulation(y, None)

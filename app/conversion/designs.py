@@ -94,7 +94,7 @@ def prior_information(model: Model, known: bool) -> FloatArray:
     if not model.effects:
         if not known:
             raise MisuseError("the model has no covariance that could be prior information", "use_prior_information")
-        return _inverse(model.covariance)
+        return _inverse(model.theta_covariance)
     if model.joint_covariance is None:
         raise MisuseError("the model has no covariance that could be prior information", "use_prior_information")
     noise = model.noise_size

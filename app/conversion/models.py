@@ -128,8 +128,8 @@ def accuracy_documents(model: Model) -> dict[str, Any]:
     """θ, its covariance and standard deviations, σ_e²."""
     return {
         "theta": model.theta.tolist(),
-        "covariance": finite_list_or_none(model.covariance),
-        "standardDeviations": standard_deviations(model.covariance),
+        "covariance": finite_list_or_none(model.theta_covariance),
+        "standardDeviations": standard_deviations(model.theta_covariance),
         "noiseVariance": float(model.noise_variance),
     }
 

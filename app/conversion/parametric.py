@@ -21,11 +21,11 @@ from app.schemas.state_space import (
     StateSpaceModelRequest,
     StateSpaceResult,
 )
+from identification.estimates import Estimate
+from identification.models.model import Model
 from identification.outcome import Outcome
-from identification.parameter_varying import ParameterVaryingStateSpace
 from identification.parametric.estimate import ParametricEstimate, RegionReport, overall_error, response_errors
 from identification.parametric.pole_guarantee import fine_grid, worst_excess
-from identification.parametric.state_space_likelihood import LikelihoodEstimate
 from identification.signals import FrequencyResponse
 from identification.subspace.result import SubspaceEstimate
 
@@ -38,10 +38,10 @@ class Found:
     experiment_ids: Sequence[str]
     local: Sequence[SubspaceEstimate]
     parametric: ParametricEstimate | None
-    refined: LikelihoodEstimate | None
+    refined: Estimate | None
 
     @property
-    def model(self) -> ParameterVaryingStateSpace | None:
+    def model(self) -> Model | None:
         """The parameter-varying model in its last form."""
         last = self.refined or self.parametric
         return None if last is None else last.model
@@ -59,14 +59,14 @@ class Found:
 def model_documents(found: Found) -> dict[str, Any]:
     """θ, its accuracy, outcome, tests and poles."""
     model, refined = found.model, found.refined
-    covariance = None if refined is None else finite(refined.covariance, "covariances")
+    covariance = None if refined is None else finite(refined.model.theta_covariance, "covariances")
     return {
         "coefficientNames": list(MATRIX_NAMES),
         "parameterNames": [] if model is None else entry_names(model),
-        "theta": [] if model is None else _entries(model),
+        "theta": [] if model is None else finite(model.theta, "matrices").tolist(),
         "covariance": None if covariance is None else finite_list_or_none(covariance),
         "standardDeviations": None if covariance is None else standard_deviations(covariance),
-        "noiseVariance": None if refined is None else refined.noise_variance,
+        "noiseVariance": None if refined is None else refined.model.noise_variance,
         "outcome": outcome_document(found.outcome).as_json(),
         "tests": [] if refined is None else [test.as_json() for test in test_documents(refined.tests)],
         "stable": _stable(found),
@@ -87,7 +87,7 @@ def state_space_result(
         subspace_estimator=request.subspace_estimator,
         parametric_estimator=request.parametric_estimator,
         refinement=request.refinement,
-        order=None if model is None else model.order,
+        order=None if model is None else model.structure.order,
         sample_time_seconds=sample_time(structure),
         input_count=inputs,
         output_count=outputs,
@@ -131,12 +131,6 @@ def _guarantee(report: RegionReport) -> PoleGuarantee:
         relative_error=report.error,
         relative_error_without_region=report.error_without,
     )
-
-
-def _entries(model: ParameterVaryingStateSpace) -> list[float]:
-    entries = np.concatenate([matrix.ravel() for matrix in (model.a, model.b, model.c, model.d)])
-    values: list[float] = finite(entries, "matrices").tolist()
-    return values
 
 
 def _stable(found: Found) -> bool:

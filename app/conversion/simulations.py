@@ -13,10 +13,11 @@ from app.schemas.experiments import SchedulingRange
 from app.schemas.models import Model
 from app.schemas.plants import ContinuousTimeStructure, Plant
 from app.schemas.simulations import LeftOutEffect, SimulatedOutput
-from identification.along import Simulation, simulate_affine, simulate_along, simulate_state_space
+from identification.along import Simulation, simulate_along
 from identification.arrays import FloatArray
 from identification.errors import MisuseError
 from identification.extension.steady_period import LeftOut
+from identification.varying.frozen import affine_model
 
 FROZEN = (
     "The model was identified at operating points that were held still; its coefficients follow p(t) at once, and what"
@@ -34,12 +35,12 @@ def simulated(model: Model, plant: Plant, u: FloatArray, p: FloatArray) -> tuple
     """The simulation, and what it leaves out; raises MisuseError."""
     unknown = [] if model.covariance is not None else [NO_BAND]
     if model.varying is not None:
-        return simulate_affine(kept_estimate(model, plant), u, p), unknown
+        return simulate_along(affine_model(kept_estimate(model, plant)), u, p, model.covariance is not None), unknown
     if is_state_space(model.structure):
         frozen = kept_state_space(model, plant)
         if frozen is None:
             raise MisuseError("this model is one of single operating points only; it cannot follow p(t)", "model")
-        return simulate_state_space(frozen, u, p), [FROZEN, *(unknown or [NO_BAND_ALONG])]
+        return simulate_along(frozen, u, p, covariance_known=False), [FROZEN, *(unknown or [NO_BAND_ALONG])]
     found = simulate_along(kept_model(model, plant), u, p, model.covariance is not None)
     return found, [FROZEN, *unknown]
 

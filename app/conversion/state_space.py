@@ -13,7 +13,7 @@ from app.conversion.plants import (
     parameter_dependence,
     state_space_dependence,
 )
-from app.schemas.models import Model
+from app.schemas.models import Model as ModelDocument
 from app.schemas.outcomes import PolesAtPoint
 from app.schemas.plants import Plant, StateSpaceStructureDocument
 from app.schemas.state_space import (
@@ -24,8 +24,9 @@ from app.schemas.state_space import (
     StateSpaceModelRequest,
 )
 from identification.errors import MisuseError
+from identification.models.model import Model
+from identification.models.state_space_model import stacks, state_space_model
 from identification.models.system import StateSpace
-from identification.parameter_varying import ParameterVaryingStateSpace
 from identification.parametric.estimate import ResponseError
 from identification.scheduling import ParameterDependence
 from identification.subspace.result import SubspaceEstimate
@@ -44,20 +45,28 @@ def requested_state_space(
     return structure, state_space_dependence(plant, structure, basis, own)
 
 
-def kept_state_space(model: Model, plant: Plant) -> ParameterVaryingStateSpace | None:
-    """The parameter-varying state-space model of a document, None when it has none."""
-    found = model.state_space
+def kept_state_space(document: ModelDocument, plant: Plant) -> Model | None:
+    """The parameter-varying state-space model of a document, None when it has none.
+
+    One without a covariance is taken as exactly known.
+    """
+    found = document.state_space
     if found is None or found.matrices is None:
         return None
-    dependence = parameter_dependence(MATRIX_NAMES, plant.scheduling_variables, model.basis, model.coefficient_bases)
+    asked = plant.scheduling_variables
+    dependence = parameter_dependence(MATRIX_NAMES, asked, document.basis, document.coefficient_bases)
     a, b, c, d = (np.array(getattr(found.matrices, f"matrix_{name}"), dtype=float) for name in "abcd")
-    return ParameterVaryingStateSpace(dependence.variables, dependence.bases, a, b, c, d, found.sample_time_seconds)
+    known = None if document.covariance is None else np.array(document.covariance, dtype=float)
+    noise = document.noise_variance or 1.0
+    return state_space_model(
+        dependence.variables, dependence.bases, (a, b, c, d), found.sample_time_seconds, known, noise
+    )
 
 
-def kept_local(model: Model, point: Sequence[float]) -> StateSpace:
+def kept_local(document: ModelDocument, point: Sequence[float]) -> StateSpace:
     """The local model at an operating point; raises MisuseError when there is none."""
-    assert model.state_space is not None, "asked for state-space models only"
-    local = model.state_space.local_models
+    assert document.state_space is not None, "asked for state-space models only"
+    local = document.state_space.local_models
     for one in local:
         if np.allclose(one.operating_point, point, rtol=1e-9, atol=0.0):
             a, b, c, d = (np.array(getattr(one, f"matrix_{name}"), dtype=float) for name in "abcd")
@@ -66,26 +75,24 @@ def kept_local(model: Model, point: Sequence[float]) -> StateSpace:
     raise MisuseError(f"this model is one of single operating points only; choose one of them: {known}")
 
 
-def entry_names(model: ParameterVaryingStateSpace) -> list[str]:
+def entry_names(model: Model) -> list[str]:
     """A name for each entry of θ, such as A[1](2,3): function 1, row 2, column 3."""
-    names = []
-    for name, matrices, basis in zip(
-        MATRIX_NAMES, (model.a, model.b, model.c, model.d), model.dependence.bases, strict=True
-    ):
-        _, rows, columns = matrices.shape
-        places = [(i + 1, k + 1) for i in range(rows) for k in range(columns)]
-        names += [f"{name}[{label}]({i},{k})" for label in basis.labels for i, k in places]
-    return names
+    groups = zip(model.structure.groups, model.dependence.bases, strict=True)
+    return [
+        entry.replace(group.name, f"{group.name}[{label}]")
+        for group, basis in groups
+        for label in basis.labels
+        for entry in group.entries
+    ]
 
 
-def matrices_document(model: ParameterVaryingStateSpace) -> MatricesDocument:
+def matrices_document(model: Model) -> MatricesDocument:
     """The matrices of each function."""
-    return MatricesDocument(
-        matrix_a=model.a.tolist(), matrix_b=model.b.tolist(), matrix_c=model.c.tolist(), matrix_d=model.d.tolist()
-    )
+    a, b, c, d = (part.tolist() for part in stacks(model))
+    return MatricesDocument(matrix_a=a, matrix_b=b, matrix_c=c, matrix_d=d)
 
 
-def range_poles(model: ParameterVaryingStateSpace) -> list[PolesAtPoint]:
+def range_poles(model: Model) -> list[PolesAtPoint]:
     """The poles over the range of one scheduling variable; raises RangeError where they are no numbers."""
     if len(model.variables) > 1:
         return []

@@ -7,7 +7,7 @@ import numpy as np
 from app.arrays import ComplexVector, finite_list_or_none
 from app.conversion.extremes import finite
 from app.conversion.models import outcome_document, standard_deviations, test_documents
-from app.conversion.plants import MATRIX_NAMES, product_basis, scheduling_variables
+from app.conversion.plants import MATRIX_NAMES, scheduling_variables
 from app.conversion.state_space import entry_names, kept_state_space, matrices_document, range_poles
 from app.schemas.models import Model
 from app.schemas.plants import (
@@ -21,11 +21,11 @@ from app.schemas.varying import EigenvaluesDocument, VaryingModelRequest
 from identification.arrays import FloatArray, IntArray
 from identification.errors import MisuseError
 from identification.outcome import Outcome
-from identification.parameter_varying import ParameterVaryingStateSpace
 from identification.parametric.pole_guarantee import fine_grid
 from identification.varying.affine_estimate import AffineEstimate
 from identification.varying.affine_parameters import AffineSizes
 from identification.varying.affine_state_space import AffineStateSpace
+from identification.varying.frozen import affine_model
 
 
 def requested_structure(plant: Plant, request: VaryingModelRequest) -> DiscreteStateSpaceStructure:
@@ -46,28 +46,11 @@ def affine_basis(variables: int) -> ProductBasisDocument:
     return ProductBasisDocument.model_validate({"factors": factors, "totalDegree": 1})
 
 
-def _places(variables: int) -> IntArray:
-    """Where in (1, p_1, p_2, …) each function of the basis stands: the last variable comes first."""
-    return np.array([0, *range(variables, 0, -1)])
-
-
-def frozen_form(model: AffineStateSpace) -> ParameterVaryingStateSpace:
-    """The same model as one whose scheduling is held still, its functions in the order of `affine_basis`."""
-    order = _places(model.n_scheduling)
-    a, b, c, d = (part[order] for part in (model.a, model.b, model.c, model.d))
-    basis = product_basis(affine_basis(model.n_scheduling))
-    return ParameterVaryingStateSpace(model.variables, basis, a, b, c, d, model.sample_time)
-
-
 def model_parts(estimate: AffineEstimate) -> dict[str, Any]:
     """θ, its accuracy, outcome, tests and poles, as in every model document."""
-    model, frozen = estimate.model, frozen_form(estimate.model)
-    sizes = AffineSizes.of(model)
-    places = sizes.in_products
-    theta = finite(sizes.join((model.a, model.b, model.c, model.d)), "matrices")[places]
-    covariance = estimate.covariance
-    if covariance is not None:
-        covariance = finite(covariance, "covariances")[np.ix_(places, places)]
+    frozen = affine_model(estimate)
+    theta = finite(frozen.theta, "matrices")
+    covariance = None if estimate.covariance is None else finite(frozen.theta_covariance, "covariances")
     return {
         "coefficientNames": list(MATRIX_NAMES),
         "parameterNames": entry_names(frozen),
@@ -92,7 +75,7 @@ def state_space_part(model: AffineStateSpace) -> dict[str, Any]:
         sample_time_seconds=model.sample_time,
         input_count=model.n_inputs,
         output_count=model.n_outputs,
-        matrices=matrices_document(frozen_form(model)),
+        matrices=matrices_document(affine_model(AffineEstimate(model, Outcome("converged"), ()))),
         errors=[],
         singular_values=[],
         chosen_rows=None,
@@ -105,14 +88,10 @@ def kept_estimate(model: Model, plant: Plant) -> AffineEstimate:
     """The affine model of a document with its covariance; only for models from varying scheduling."""
     frozen = kept_state_space(model, plant)
     assert frozen is not None, "models from varying scheduling have matrices"
-    assert frozen.sample_time is not None, "they are in discrete time"
-    back = np.argsort(_places(len(plant.scheduling_variables)))
-    a, b, c, d = (part[back] for part in (frozen.a, frozen.b, frozen.c, frozen.d))
-    affine = AffineStateSpace(a, b, c, d, frozen.sample_time, scheduling_variables(plant))
-    covariance: FloatArray | None = None
-    if model.covariance is not None:
-        places = np.argsort(AffineSizes.of(affine).in_products)
-        covariance = np.array(model.covariance)[np.ix_(places, places)]
+    sizes = AffineSizes.like(frozen)
+    back = np.argsort(sizes.in_products)
+    affine = sizes.model(frozen.theta[back], frozen.structure.sample_time or 0.0, scheduling_variables(plant))
+    covariance = None if model.covariance is None else frozen.theta_covariance[np.ix_(back, back)]
     return AffineEstimate(affine, Outcome(model.outcome.status, model.outcome.advice), (), covariance)
 
 

@@ -137,7 +137,7 @@ def _alternatives(
     known = kept_model(first, plant)
     problem = replace(stated_problem(request, known, True), family=FirSpectra(0), band=None)
     sigma = (1 - task.MARGIN) * task.ASKED
-    times = float(np.linalg.eigvalsh(known.covariance / np.outer(sigma, sigma))[-1])
+    times = float(np.linalg.eigvalsh(known.theta_covariance / np.outer(sigma, sigma))[-1])
     return (
         ("designed", made.total_energy or 0.0),
         ("white noise at the best positions", design(problem).total_energy),

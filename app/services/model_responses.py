@@ -21,8 +21,6 @@ from identification.arrays import ComplexArray, FloatArray
 from identification.confidence import GainAndPhase, gain_and_phase
 from identification.errors import RangeError
 from identification.extension.response import LinearResponse, linear_response
-from identification.outcome import Outcome
-from identification.parametric.state_space_likelihood import LikelihoodEstimate
 
 BANDS = ("magnitude_lower95", "magnitude_upper95", "phase_lower95_rad", "phase_upper95_rad")
 
@@ -73,9 +71,7 @@ def frequency_response(
 def _evaluated(document: Model, plant: Plant, point: list[float], channel: tuple[int, int]) -> _Evaluated:
     if document.effects:
         return _extended(document, plant, point)
-    if document.state_space is not None:
-        return _state_space(document, plant, point, channel)
-    return _rational(document, plant, point)
+    return _plain(document, plant, point, channel)
 
 
 def _extended(document: Model, plant: Plant, point: list[float]) -> _Evaluated:
@@ -99,30 +95,17 @@ def _extended(document: Model, plant: Plant, point: list[float]) -> _Evaluated:
     )
 
 
-def _rational(document: Model, plant: Plant, point: list[float]) -> _Evaluated:
-    model = kept_model(document, plant)
-    return _Evaluated(
-        model.structure.sample_time,
-        lambda omega: model.frequency_response([point], omega)[0, :, 0, 0],
-        None if document.covariance is None else lambda omega: model.response_covariance([point], omega)[0, :, 0, 0],
-    )
-
-
-def _state_space(document: Model, plant: Plant, point: list[float], channel: tuple[int, int]) -> _Evaluated:
+def _plain(document: Model, plant: Plant, point: list[float], channel: tuple[int, int]) -> _Evaluated:
     y, u = (number - 1 for number in channel)
-    model = kept_state_space(document, plant)
+    model = kept_model(document, plant) if document.state_space is None else kept_state_space(document, plant)
     if model is None:
         local = kept_local(document, point)
         return _Evaluated(local.sample_time, lambda omega: local.frequency_response(omega)[:, y, u], None)
-    covariance = None
-    if document.covariance is not None:
-        known, noise = np.array(document.covariance), document.noise_variance or 1.0
-        estimate = LikelihoodEstimate(model, known, noise, Outcome("converged"), ())
-
-        def covariance(omega: FloatArray) -> FloatArray:
-            return estimate.response_covariance([point], omega)[0, :, y, u]
-
-    return _Evaluated(model.sample_time, lambda omega: model.frequency_response([point], omega)[0, :, y, u], covariance)
+    return _Evaluated(
+        model.structure.sample_time,
+        lambda omega: model.frequency_response([point], omega)[0, :, y, u],
+        None if document.covariance is None else lambda omega: model.response_covariance([point], omega)[0, :, y, u],
+    )
 
 
 def _check_channel(document: Model, channel: tuple[int, int]) -> None:

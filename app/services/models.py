@@ -78,7 +78,7 @@ def stated(plant: Plant, request: StatedModelRequest) -> dict[str, Any]:
         structure, dependence = structure_and_dependence(plant)
     with pointing(STATED_POINTERS, default=""):
         model = lpv_model(structure, dependence, request.theta, request.covariance, request.noise_variance)
-        check_covariance(model.covariance)
+        check_covariance(model.theta_covariance)
     with pointing({}, default="/theta"), within_doubles():
         over_range = range_documents(model)
     if not over_range["stable"]:

@@ -59,7 +59,7 @@ def prior_rows(prior: Model | None, size: int) -> tuple[FloatArray, FloatArray]:
     """(S, S θ̂_1) with P_θ1⁻¹ = SᵀS: what an earlier estimate adds as white rows, none without one [Ghosh2018, (13)]."""
     if prior is None:
         return np.zeros((0, size)), np.zeros(0)
-    root = whitener(prior.covariance)
+    root = whitener(prior.theta_covariance)
     return root, root @ prior.theta
 
 

@@ -3,8 +3,6 @@
 from dataclasses import dataclass, replace
 from typing import ClassVar, cast
 
-import numpy as np
-
 from identification.bases.polynomial import Polynomial
 from identification.estimates import Estimate
 from identification.methods.method import Method, Takes, Task
@@ -48,10 +46,7 @@ class AlongScheduling(Method):
             found = PeriodicLikelihood().estimate(record, task.structure.order, progress=progress)
         else:
             found = CorrelationRealisation(refinement=True).estimate(record, task.structure.order, progress=progress)
-        model = affine_model(found)
-        if found.covariance is None:
-            model = replace(model, covariance=np.full_like(model.covariance, np.inf))
-        return Estimate(model, found.outcome, found.tests)
+        return Estimate(affine_model(found), found.outcome, found.tests)
 
 
 def _record(task: Task) -> VaryingRecord:

@@ -6,8 +6,6 @@ from typing import ClassVar
 from identification.estimates import Estimate
 from identification.methods.method import Method, Takes, Task, held_still
 from identification.models.state_space import StateSpaceStructure
-from identification.models.state_space_model import stacks, state_space_model
-from identification.parameter_varying import ParameterVaryingStateSpace
 from identification.parametric.parametric_subspace import ParametricSubspace
 from identification.parametric.state_space_likelihood import StateSpaceLikelihood
 from identification.signals import FrequencyResponse, TimeRecord
@@ -32,25 +30,13 @@ class SubspaceLikelihood(Method):
         """The model with the covariance of its entries, whose rank is that of what any response shows."""
         order, discrete = task.structure.order, task.structure.is_discrete
         data = [self._response(one, discrete) for one in held_still(task)]
-        dependence = task.dependence
-        if task.start is None:
+        start = task.start
+        if start is None:
             progress(0.1, "the subspace estimate")
-            first = ParametricSubspace(order=order, region=self.refinement.region).estimate(dependence, data).model
-        else:
-            step = task.structure.sample_time
-            first = ParameterVaryingStateSpace(dependence.variables, dependence.bases, *stacks(task.start), step)
+            first = ParametricSubspace(order=order, region=self.refinement.region)
+            start = first.estimate(task.dependence, data).model
         progress(0.4, "maximum likelihood")
-        found = self.refinement.estimate(first, data)
-        last = found.model
-        model = state_space_model(
-            last.variables,
-            dependence.bases,
-            (last.a, last.b, last.c, last.d),
-            last.sample_time,
-            found.covariance,
-            found.noise_variance,
-        )
-        return Estimate(model, found.outcome, found.tests)
+        return self.refinement.estimate(start, data)
 
     def refuses(self, task: Task) -> str | None:
         """Responses must have the channels of the structure; a start must be of it."""

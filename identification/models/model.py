@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from identification.arrays import ComplexArray, FloatArray
+from identification.arrays import BoolArray, ComplexArray, FloatArray
 from identification.comparison.batch import Batch
 from identification.errors import MisuseError, ShapeError
 from identification.models.physical import RationalForm
@@ -15,7 +15,7 @@ from identification.models.structure import Structure
 from identification.places.place import Flow, Setting
 from identification.places.placed import PlacedEffect
 from identification.places.simulate import Acting, followed, simulate
-from identification.scheduling import ParameterDependence
+from identification.scheduling import ParameterDependence, SchedulingVariable
 from identification.signals import OperatingPoint
 
 SLOPE_STEP = 1e-4
@@ -36,16 +36,17 @@ class LocalModel:
 class Model:
     """A parameter-varying model ζ(p) = T(p) θ of a plant, and the physical effects that act in it or on it.
 
-    θ (k,) with its `covariance` P_θ (k, k); `noise_variance` σ_e² of e. `joint_covariance` of `parameters`, θ_G and
-    those of the effects, as they were estimated together; None before that. Its coefficients, response and poles are
-    those of the plant itself; `respond` and `output` hold the effects as well. `chart` Q (k, r): where the structure
-    has directions that no response shows, θ_G moves along the columns of Q only, and δ = Qᵀ θ stands in its place.
+    θ (k,) with its `covariance` P_θ (k, k), None where it is not known; `noise_variance` σ_e² of e. `joint_covariance`
+    of `parameters`, θ_G and those of the effects, as they were estimated together; None before that. Its coefficients,
+    response and poles are those of the plant itself; `respond` and `output` hold the effects as well. `chart` Q (k, r):
+    where the structure has directions that no response shows, θ_G moves along the columns of Q only, and δ = Qᵀ θ
+    stands in its place.
     """
 
     structure: Structure
     dependence: ParameterDependence
     theta: FloatArray
-    covariance: FloatArray
+    covariance: FloatArray | None
     noise_variance: float
     effects: tuple[PlacedEffect, ...] = ()
     joint_covariance: FloatArray | None = None
@@ -57,7 +58,7 @@ class Model:
             raise ShapeError(f"{self.dependence.coefficient_count} bases were given for {n} coefficients", "basis")
         if np.shape(self.theta) != (k,):
             raise ShapeError(f"θ has shape {np.shape(self.theta)}, this model has {k} parameters", "theta")
-        if np.shape(self.covariance) != (k, k):
+        if self.covariance is not None and np.shape(self.covariance) != (k, k):
             raise ShapeError(f"the covariance has shape {np.shape(self.covariance)}, it must be {(k, k)}", "covariance")
 
     @cached_property
@@ -86,10 +87,17 @@ class Model:
 
     @property
     def plant_covariance(self) -> FloatArray:
-        """The covariance of θ_G, or of δ."""
+        """The covariance of θ_G, or of δ; raises MisuseError where it is not known."""
         if self.chart is not None:
-            return np.asarray(self.chart.T @ self.covariance @ self.chart)
-        return self.covariance[: self.plant_size, : self.plant_size]
+            return np.asarray(self.chart.T @ self.theta_covariance @ self.chart)
+        return self.theta_covariance[: self.plant_size, : self.plant_size]
+
+    @property
+    def theta_covariance(self) -> FloatArray:
+        """P_θ; raises MisuseError where it is not known."""
+        if self.covariance is None:
+            raise MisuseError("the model has no covariance; refine it by maximum likelihood, or state one", "model")
+        return self.covariance
 
     def pulled(self, by_zeta: ComplexArray, points: ArrayLike) -> ComplexArray:
         """Derivatives by ζ_G (M, …, n_plant) as those by θ_G, or δ, (M, …, k_G)."""
@@ -99,6 +107,11 @@ class Model:
     def direction(self, plant: FloatArray) -> FloatArray:
         """A change of θ_G, or of δ, as one of θ (k,)."""
         return np.pad(plant, (0, self.noise_size)) if self.chart is None else np.asarray(self.chart @ plant)
+
+    @property
+    def variables(self) -> tuple[SchedulingVariable, ...]:
+        """The scheduling variables with their ranges."""
+        return self.dependence.variables
 
     def coefficients(self, points: ArrayLike) -> FloatArray:
         """ζ(p) at the operating points (M, s), as (M, n)."""
@@ -119,6 +132,10 @@ class Model:
         """Poles of G at the operating points (M, s), as (M, n_a)."""
         return self.structure.poles(self.coefficients(points))
 
+    def stable(self, points: ArrayLike) -> BoolArray:
+        """Whether G is stable, and H stable with a stable inverse, at the operating points (M, s), as (M,)."""
+        return self.structure.stable(self.coefficients(points))
+
     @property
     def parameters(self) -> FloatArray:
         """θ_G, or δ, then the parameters of each effect."""
@@ -127,7 +144,7 @@ class Model:
     @property
     def known_covariance(self) -> FloatArray | None:
         """The covariance of `parameters`; without effects that of θ_G serves, with effects not yet estimated None."""
-        if self.joint_covariance is None and not self.effects:
+        if self.joint_covariance is None and not self.effects and self.covariance is not None:
             return self.plant_covariance
         return self.joint_covariance
 

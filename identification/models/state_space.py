@@ -12,6 +12,7 @@ from identification.models.structure import NOT_ALONG, Along, Group, Structure
 
 Matrices = tuple[FloatArray, FloatArray, FloatArray, FloatArray]
 MULTIPLE = 1e8
+ON_A_POLE = "a frequency is that of a pole on the border of stability; leave it out"
 
 
 @dataclass(frozen=True)
@@ -130,5 +131,8 @@ class StateSpaceStructure(Structure):
         a, b, c, _ = (part[..., None, :, :] for part in self.matrices(zeta))
         s = 1j * np.asarray(omega, dtype=np.float64)[:, None, None]
         z = s if self.sample_time is None else np.exp(s * self.sample_time)
-        resolvent = np.linalg.inv(z * np.eye(self.order) - a)
+        try:
+            resolvent = np.linalg.inv(z * np.eye(self.order) - a)
+        except np.linalg.LinAlgError as error:
+            raise RangeError(ON_A_POLE, "frequencies") from error
         return np.asarray(resolvent @ b), np.asarray(c @ resolvent)

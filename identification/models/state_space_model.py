@@ -1,14 +1,17 @@
 """State-space models over the scheduling variables, written by their matrices."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import cast
 
 import numpy as np
 
-from identification.arrays import FloatArray
+from identification.arrays import FloatArray, finite_floats
+from identification.errors import ShapeError
 from identification.models.chart import gauge_tangent, perpendicular
 from identification.models.model import Model
 from identification.models.state_space import Matrices, StateSpaceStructure
+from identification.models.system import require_matching
 from identification.scheduling import ProductBasis, SchedulingVariable
 
 
@@ -22,16 +25,35 @@ def state_space_model(
 ) -> Model:
     """A(p) = Σ_j A_j f_j(p), and B, C, D alike, for stacks (functions, ·, ·) of the four matrices.
 
-    θ are the entries of A_1, A_2, …, B_1, …, each matrix row by row; `covariance` of θ, zero when it is exactly known.
-    What changes only the state basis has no covariance: the chart of the model leaves it out.
+    θ are the entries of A_1, A_2, …, B_1, …, each matrix row by row; `covariance` of θ, None when it is not known.
+    What changes only the state basis has no covariance: the chart of a model with one leaves it out. Raises ShapeError
+    for sizes that do not fit, and RangeError for values that are not finite.
     """
+    matrices = _checked(matrices, bases)
     a, b, c, _ = matrices
     structure = StateSpaceStructure(a.shape[-1], b.shape[-1], c.shape[-2], sample_time)
     dependence = structure.over(variables, **dict(zip("ABCD", bases, strict=True)))
     theta = np.concatenate([np.ravel(part) for part in matrices])
-    known = np.zeros((len(theta),) * 2) if covariance is None else covariance
-    chart = perpendicular(gauge_tangent(structure, dependence, theta))
-    return Model(structure, dependence, theta, known, noise_variance, chart=chart)
+    model = Model(structure, dependence, theta, covariance, noise_variance)
+    return model if covariance is None else charted(model)
+
+
+def charted(model: Model) -> Model:
+    """The model, moving only in directions that a response shows."""
+    return replace(model, chart=perpendicular(gauge_tangent(model.structure, model.dependence, model.theta)))
+
+
+def _checked(matrices: Matrices, bases: Sequence[ProductBasis]) -> Matrices:
+    if len(bases) != 4:
+        raise ShapeError(f"{len(bases)} bases were given; give one each for A, B, C and D", "bases")
+    a, b, c, d = (finite_floats(part, name) for part, name in zip(matrices, "abcd", strict=True))
+    for name, part, basis in zip("abcd", (a, b, c, d), bases, strict=True):
+        if part.ndim != 3 or len(part) != basis.size:
+            raise ShapeError(
+                f"{name.upper()} has shape {part.shape}; give {basis.size} matrices, one per function", name
+            )
+    require_matching(a[0], b[0], c[0], d[0])
+    return a, b, c, d
 
 
 def stacks(model: Model) -> Matrices:

@@ -7,8 +7,8 @@ from typing import Literal
 import numpy as np
 
 from identification.arrays import FloatArray
+from identification.models.model import Model
 from identification.outcome import Outcome
-from identification.parameter_varying import ParameterVaryingStateSpace
 from identification.parametric.canonical_rows import CanonicalRows
 from identification.signals import FrequencyResponse
 
@@ -54,7 +54,7 @@ class ParametricEstimate:
     rows behind the state basis; `region`: None when no pole region was asked for.
     """
 
-    model: ParameterVaryingStateSpace
+    model: Model
     outcome: Outcome
     errors: tuple[ResponseError, ...]
     singular_values: tuple[FloatArray, ...]
@@ -62,14 +62,12 @@ class ParametricEstimate:
     region: RegionReport | None = None
 
 
-def response_errors(
-    model: ParameterVaryingStateSpace, experiments: Sequence[FrequencyResponse]
-) -> tuple[ResponseError, ...]:
+def response_errors(model: Model, experiments: Sequence[FrequencyResponse]) -> tuple[ResponseError, ...]:
     """The errors of a model at every operating point of the data."""
     return tuple(_error(model, data) for data in experiments)
 
 
-def _error(model: ParameterVaryingStateSpace, data: FrequencyResponse) -> ResponseError:
+def _error(model: Model, data: FrequencyResponse) -> ResponseError:
     deviation = data.matrices - model.frequency_response([data.operating_point], data.frequencies)[0]
     norms = np.linalg.norm(deviation, axis=(1, 2))
     size = float(np.linalg.norm(data.matrices))
@@ -77,7 +75,7 @@ def _error(model: ParameterVaryingStateSpace, data: FrequencyResponse) -> Respon
     return ResponseError(data.operating_point, float(norms.max()), float(np.sqrt(np.mean(norms**2))), relative)
 
 
-def overall_error(model: ParameterVaryingStateSpace, experiments: Sequence[FrequencyResponse]) -> float:
+def overall_error(model: Model, experiments: Sequence[FrequencyResponse]) -> float:
     """‖(Ĝ − G)/σ‖ / ‖Ĝ/σ‖ over all operating points, σ² the variances of the data (equal when none are stated)."""
     above = below = 0.0
     for data in experiments:

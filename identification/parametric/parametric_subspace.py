@@ -8,8 +8,9 @@ import numpy as np
 
 from identification.arrays import ComplexArray, FloatArray
 from identification.errors import MisuseError, NotIdentifiableError, RangeError, ShapeError
+from identification.models.model import Model
+from identification.models.state_space_model import state_space_model
 from identification.outcome import Outcome
-from identification.parameter_varying import ParameterVaryingStateSpace
 from identification.parametric.canonical_rows import canonical, choose_rows, misfit_weight
 from identification.parametric.conic_programme import Misfit
 from identification.parametric.equations import ShiftEquations, input_matrices, shift_equations
@@ -106,9 +107,7 @@ class ParametricSubspace:
             model, outcome, report = self._constrained(self.region, problem, model)
         return ParametricEstimate(model, outcome, response_errors(model, experiments), singular_values, rows, report)
 
-    def _constrained(
-        self, region: PoleRegion, problem: "_Problem", free: ParameterVaryingStateSpace
-    ) -> tuple[ParameterVaryingStateSpace, Outcome, RegionReport]:
+    def _constrained(self, region: PoleRegion, problem: "_Problem", free: Model) -> tuple[Model, Outcome, RegionReport]:
         basis, variables = problem.dependence.bases[0], problem.dependence.variables
         corners = corners_suffice(basis, variables)
         places = grid(variables, 2 if corners else self.grid_count)
@@ -143,14 +142,12 @@ class _Problem:
     lines: Sequence[ComplexArray]
     weight: FloatArray
 
-    def model(self, dynamics: FloatArray) -> ParameterVaryingStateSpace:
+    def model(self, dynamics: FloatArray) -> Model:
         """The model with these A_j, its C, B and D by least squares."""
         c = self.equations.outputs()
         b, d = input_matrices(dynamics, c, self.experiments, self.lines, self.dependence, self.points)
         sample_time = self.experiments[0].sample_time
-        return ParameterVaryingStateSpace(
-            self.dependence.variables, self.dependence.bases, dynamics, b, c, d, sample_time
-        )
+        return state_space_model(self.dependence.variables, self.dependence.bases, (dynamics, b, c, d), sample_time)
 
 
 def _variable(data: FrequencyResponse) -> ComplexArray:

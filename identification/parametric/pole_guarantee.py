@@ -5,8 +5,8 @@ from itertools import product
 import numpy as np
 
 from identification.arrays import FloatArray
+from identification.models.model import Model
 from identification.outcome import Outcome
-from identification.parameter_varying import ParameterVaryingStateSpace
 from identification.parametric.estimate import RegionReport
 from identification.pole_regions.inequality import PoleRegion
 from identification.scheduling import ProductBasis, SchedulingVariable
@@ -36,14 +36,14 @@ def fine_grid(variables: tuple[SchedulingVariable, ...]) -> FloatArray:
     return grid(variables, max(int(np.ceil(CHECKED ** (1 / len(variables)))), 2))
 
 
-def worst_excess(model: ParameterVaryingStateSpace, region: PoleRegion) -> tuple[float, FloatArray]:
+def worst_excess(model: Model, region: PoleRegion) -> tuple[float, FloatArray]:
     """The largest f(λ) over the fine grid, and the operating point (s,) where it is."""
     points = fine_grid(model.variables)
     excess = region.excess(model.poles(points)).max(axis=1)
     return float(excess.max()), points[int(excess.argmax())]
 
 
-def stability_advice(model: ParameterVaryingStateSpace) -> str:
+def stability_advice(model: Model) -> str:
     """A warning where a model without pole region is unstable somewhere in the range."""
     points = fine_grid(model.variables)
     unstable = points[~model.stable(points)]
@@ -56,7 +56,7 @@ def stability_advice(model: ParameterVaryingStateSpace) -> str:
     )
 
 
-def judged(model: ParameterVaryingStateSpace, report: RegionReport, solved: bool, iterations: int) -> Outcome:
+def judged(model: Model, report: RegionReport, solved: bool, iterations: int) -> Outcome:
     """The outcome of an estimate with a pole region: infeasible when the data and the region exclude each other."""
     place = ", ".join(f"{v.name} in [{v.minimum:g}, {v.maximum:g}]" for v in model.variables)
     if report.certificate >= 0 or report.worst_excess >= 0:

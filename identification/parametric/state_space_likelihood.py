@@ -1,54 +1,28 @@
 """Maximum likelihood of a parametric state-space model on frequency responses, from a start."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated, ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from identification.arrays import ComplexArray, FloatArray
 from identification.errors import MisuseError, NotIdentifiableError
+from identification.estimates import Estimate
 from identification.least_squares import LeastSquaresSolution, levenberg_marquardt
 from identification.lti.response_tests import real_count, variance_inflation
 from identification.lti.whiteness import chi_square
-from identification.outcome import Outcome, TestResult
-from identification.parameter_varying import ParameterVaryingStateSpace
+from identification.models.model import Model
+from identification.models.state_space_model import charted
+from identification.outcome import Outcome
 from identification.parametric.pole_guarantee import fine_grid, grid
-from identification.parametric.state_space_residuals import StateSpaceParameters, residual_and_jacobian, whitener
+from identification.parametric.state_space_residuals import entry_gradient, residual_and_jacobian, whitener
 from identification.parametric.triangular import triangular_factor
 from identification.pole_regions.inequality import PoleRegion
 from identification.signals import FrequencyResponse
 
 PRECISION = 3e-5  # the search ends when the misfit could fall by less than this squared
 EFFECTIVE = 1e-7  # smaller changes of the response, relative to the largest, are taken for none
-
-
-@dataclass(frozen=True, eq=False)
-class LikelihoodEstimate:
-    """A model with the covariance (k, k) of all its entries θ, ordered as `StateSpaceParameters` does.
-
-    The covariance is singular: the state basis is arbitrary, and the n² directions in which only it changes have none.
-    What does not depend on the basis has the covariance that any basis gives, as `response_covariance` says.
-    `noise_variance`: 1 when the data state variances, else the estimated variance of their noise.
-    """
-
-    model: ParameterVaryingStateSpace
-    covariance: FloatArray
-    noise_variance: float
-    outcome: Outcome
-    tests: tuple[TestResult, ...]
-
-    def response_covariance(self, points: ArrayLike, omega: FloatArray) -> FloatArray:
-        """Covariance of (Re, Im) of each entry of G at points (M, s) and ω (F,), as (M, F, n_y, n_u, 2, 2)."""
-        parameters = StateSpaceParameters(self.model)
-        results = []
-        for point in self.model.dependence.points(points):
-            gradient = parameters.gradient(self.model, tuple(point), omega)
-            pair = np.stack([gradient.real, gradient.imag], axis=2)
-            results.append(np.einsum("fcik,kl,fcjl->fcij", pair, self.covariance, pair, optimize=True))
-        shape = (len(results), len(omega), self.model.output_count, self.model.input_count, 2, 2)
-        return np.asarray(np.reshape(results, shape))
 
 
 @dataclass(frozen=True)
@@ -60,7 +34,8 @@ class StateSpaceLikelihood:
     The search moves in data-driven local coordinates, the directions of θ that change the responses, chosen anew in
     every round [McKelvey2004]. With a `region` no step is taken after which a pole leaves it at the operating points
     of a grid; a proof for those between is not given. Where the entries can do more than the plant needs, some
-    directions are hardly determined and the covariance, exact to first order in the noise, is too optimistic.
+    directions are hardly determined and the covariance, exact to first order in the noise, is too optimistic. The
+    variance of the noise is 1 when the data state variances, else it is estimated.
     """
 
     kind: ClassVar[str] = "state_space_likelihood"
@@ -71,56 +46,54 @@ class StateSpaceLikelihood:
     rounds: Annotated[int, "most changes of the local coordinates"] = 10
     max_iterations: Annotated[int, "most iterations of each round"] = 30
 
-    def estimate(
-        self, start: ParameterVaryingStateSpace, experiments: Sequence[FrequencyResponse]
-    ) -> LikelihoodEstimate:
-        """The refined model, with a test of fit against χ² where the variances are known.
+    def estimate(self, start: Model, experiments: Sequence[FrequencyResponse]) -> Estimate:
+        """The refined model with the covariance of its entries, with a test of fit where the variances are known.
 
         Raises NotIdentifiableError for fewer real numbers than parameters, MisuseError for a start outside the region
         or of another sample time or size than the data.
         """
         self._check(start, experiments)
-        parameters, whiteners = StateSpaceParameters(start), [whitener(data) for data in experiments]
-        theta = parameters.vector(start)
+        model, whiteners = start, [whitener(data) for data in experiments]
         iterations, cost = 0, np.inf
         for _ in range(self.rounds):
-            solution, chart = self._round(parameters, theta, experiments, whiteners)
-            theta, iterations = theta + chart @ solution.x, iterations + solution.outcome.iterations
+            solution, chart = self._round(model, experiments, whiteners)
+            model, iterations = _moved(model, chart @ solution.x), iterations + solution.outcome.iterations
             if solution.outcome.ok or solution.cost > cost * (1 - PRECISION**2):
                 break
             cost = solution.cost
-        return _estimate(parameters, theta, chart, solution, experiments, iterations)
+        return _estimate(model, chart, solution, experiments, iterations)
 
     def _round(
         self,
-        parameters: StateSpaceParameters,
-        theta: FloatArray,
+        model: Model,
         experiments: Sequence[FrequencyResponse],
         whiteners: Sequence[ComplexArray],
     ) -> tuple[LeastSquaresSolution, FloatArray]:
         """A search in the coordinates δ of θ + chart δ."""
-        jacobian = residual_and_jacobian(parameters, theta, experiments, whiteners)[1]
+        jacobian = residual_and_jacobian(model, experiments, whiteners)[1]
         chart = _chart(jacobian)
 
         def evaluate(delta: FloatArray) -> tuple[FloatArray, FloatArray]:
-            residual, full = residual_and_jacobian(parameters, theta + chart @ delta, experiments, whiteners)
+            residual, full = residual_and_jacobian(_moved(model, chart @ delta), experiments, whiteners)
             return residual, full @ chart
 
         def feasible(delta: FloatArray) -> bool:
-            return self._inside(parameters.model(theta + chart @ delta))
+            return self._inside(_moved(model, chart @ delta))
 
         start = np.zeros(chart.shape[1])
         inside = feasible if self.region is not None else None
         return levenberg_marquardt(evaluate, start, inside, self.max_iterations, PRECISION), chart
 
-    def _inside(self, model: ParameterVaryingStateSpace) -> bool:
+    def _inside(self, model: Model) -> bool:
         count = len(model.variables)
         points = grid(model.variables, 65) if count == 1 else fine_grid(model.variables)
         return self.region is None or bool(np.all(self.region.excess(model.poles(points)) < -self.margin))
 
-    def _check(self, start: ParameterVaryingStateSpace, experiments: Sequence[FrequencyResponse]) -> None:
+    def _check(self, start: Model, experiments: Sequence[FrequencyResponse]) -> None:
+        structure = start.structure
+        ours = (structure.sample_time, (structure.outputs, structure.inputs))
         for data in experiments:
-            ours, theirs = (start.sample_time, start.d.shape[1:]), (data.sample_time, data.matrices.shape[1:])
+            theirs = (data.sample_time, data.matrices.shape[1:])
             if ours != theirs:
                 raise MisuseError(
                     f"sample time and outputs × inputs are {ours} in the start and {theirs} in the data at"
@@ -156,16 +129,16 @@ def _chart(jacobian: FloatArray) -> FloatArray:
     return np.asarray(scale[:, None] * (directions[: len(sizes)][kept] / sizes[kept, None]).T)
 
 
-def _undetermined(
-    parameters: StateSpaceParameters, theta: FloatArray, experiments: Sequence[FrequencyResponse]
-) -> bool:
+def _moved(model: Model, change: FloatArray) -> Model:
+    return replace(model, theta=model.theta + change)
+
+
+def _undetermined(model: Model, experiments: Sequence[FrequencyResponse]) -> bool:
     """Whether θ can change so that the responses stay as they are where measured, but not elsewhere in the range."""
-    model, omega = parameters.model(theta), experiments[0].frequencies[:: max(len(experiments[0]) // 40, 1)]
+    omega = experiments[0].frequencies[:: max(len(experiments[0]) // 40, 1)]
     places = grid(model.variables, 9 if len(model.variables) == 1 else 4)
-    elsewhere = _real(np.concatenate([parameters.gradient(model, tuple(p), omega) for p in places]))
-    measured = _real(
-        np.concatenate([parameters.gradient(model, d.operating_point, d.frequencies) for d in experiments])
-    )
+    elsewhere = _real(np.concatenate([entry_gradient(model, tuple(p), omega) for p in places]))
+    measured = _real(np.concatenate([entry_gradient(model, d.operating_point, d.frequencies) for d in experiments]))
     return _rank(np.concatenate([measured, elsewhere])) > _rank(measured)
 
 
@@ -178,8 +151,8 @@ def _rank(jacobian: FloatArray) -> int:
     return len(_chart(jacobian).T)
 
 
-def _freedom(model: ParameterVaryingStateSpace, experiments: Sequence[FrequencyResponse]) -> int:
-    size = len(StateSpaceParameters(model).vector(model)) - model.order**2
+def _freedom(model: Model, experiments: Sequence[FrequencyResponse]) -> int:
+    size = len(model.theta) - model.structure.order**2
     count: int = sum(real_count(data) * _entries(data) for data in experiments)
     return count - size
 
@@ -189,14 +162,12 @@ def _entries(data: FrequencyResponse) -> int:
 
 
 def _estimate(
-    parameters: StateSpaceParameters,
-    theta: FloatArray,
+    model: Model,
     chart: FloatArray,
     solution: LeastSquaresSolution,
     experiments: Sequence[FrequencyResponse],
     iterations: int,
-) -> LikelihoodEstimate:
-    model = parameters.model(theta)
+) -> Estimate:
     freedom = _freedom(model, experiments)
     stated = all(data.variance is not None for data in experiments)
     inflation = max(variance_inflation(data.variance_degrees_of_freedom) for data in experiments)
@@ -205,7 +176,8 @@ def _estimate(
     exact = stated and all(data.variance_degrees_of_freedom is None for data in experiments)
     tests = (chi_square("lack of fit", solution.cost, freedom),) if exact and freedom else ()
     outcome = Outcome(solution.outcome.status, solution.outcome.advice, iterations)
-    if _undetermined(parameters, theta, experiments):
+    if _undetermined(model, experiments):
         advice = "the data do not determine the model between the operating points; measure at more of them"
         outcome = Outcome("not_identifiable", advice, iterations)
-    return LikelihoodEstimate(model, covariance, variance, outcome, tests)
+    found = charted(replace(model, covariance=covariance, noise_variance=variance))
+    return Estimate(found, outcome, tests)

@@ -66,21 +66,6 @@ class AffineEstimate:
             dx = propagate(a, forcing, np.zeros(sizes.order))[:-1]
             yield (c @ dx[:, :, None] + dc @ x[:, :, None] + dd @ input[:, :, None])[..., 0]
 
-    def response_covariance(self, points: FloatArray, omega: FloatArray) -> FloatArray:
-        """Covariance of (Re G, Im G) with the scheduling held still at points (M, n_p), (M, F, n_y, n_u, 2, 2)."""
-        model, sizes = self.model, AffineSizes.of(self.model)
-        a, b, c, _ = (part[:, None] for part in model.frozen(points))
-        z = np.exp(1j * omega * model.sample_time)[:, None, None]
-        resolvent = np.linalg.inv(z * np.eye(sizes.order) - a)
-        state, through = resolvent @ b, c @ resolvent
-        total = np.zeros((*state.shape[:2], sizes.n_outputs, sizes.n_inputs, 2, 2))
-        for direction in _root(self._covariance()).T:
-            da, db, dc, dd = (part[:, None] for part in frozen_matrices(sizes.split(direction), points))
-            change = through @ (da @ state + db) + dc @ state + dd
-            parts = np.stack([change.real, change.imag], axis=-1)
-            total += parts[..., :, None] * parts[..., None, :]
-        return total
-
     def _covariance(self) -> FloatArray:
         if self.covariance is None or not np.all(np.isfinite(self.covariance)):
             raise NotIdentifiableError(

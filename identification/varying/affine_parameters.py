@@ -7,6 +7,7 @@ import numpy as np
 from identification.arrays import FloatArray, IntArray
 from identification.errors import RangeError
 from identification.models.chart import perpendicular
+from identification.models.model import Model
 from identification.scheduling import SchedulingVariable
 from identification.varying.affine_state_space import AffineStateSpace, Matrices
 
@@ -24,6 +25,12 @@ class AffineSizes:
     def of(cls, model: AffineStateSpace) -> "AffineSizes":
         """Those of a model."""
         return cls(model.order, model.n_scheduling, model.n_inputs, model.n_outputs)
+
+    @classmethod
+    def like(cls, model: Model) -> "AffineSizes":
+        """Those of a model over scheduling variables."""
+        structure = model.structure
+        return cls(structure.order, len(model.variables), structure.inputs, structure.outputs)
 
     @property
     def shapes(self) -> tuple[tuple[int, int, int], ...]:

@@ -9,7 +9,7 @@ from identification.arrays import FloatArray
 from identification.bases.polynomial import Polynomial
 from identification.errors import MisuseError
 from identification.models.model import Model
-from identification.models.state_space_model import state_space_model
+from identification.models.state_space_model import charted, state_space_model
 from identification.outcome import Outcome
 from identification.places.linear import Coefficient
 from identification.places.placed import PlacedEffect
@@ -84,7 +84,7 @@ def frozen(estimate: AffineEstimate, effects: tuple[PlacedEffect, ...] = (), joi
     basis = smallest_basis(model)
     turning = _turning(AffineSizes.of(model), basis)
     known = None if estimate.covariance is None else turning @ estimate.covariance @ turning.T
-    found = affine_model(AffineEstimate(model.transformed(basis), estimate.outcome, (), known))
+    found = charted(affine_model(AffineEstimate(model.transformed(basis), estimate.outcome, (), known)))
     assert found.chart is not None, "state spaces have a chart"
     if effects:
         inner = found.chart.T @ turning[AffineSizes.of(model).in_products]
@@ -95,10 +95,7 @@ def frozen(estimate: AffineEstimate, effects: tuple[PlacedEffect, ...] = (), joi
 
 
 def affine_model(estimate: AffineEstimate) -> Model:
-    """The model of an estimate with declared scheduling variables, its matrices over 1 and each variable.
-
-    A covariance that is not known is zero there.
-    """
+    """The model of an estimate with declared scheduling variables, its matrices over 1 and each variable."""
     affine, places = estimate.model, AffineSizes.of(estimate.model).in_products
     functions = [0, *range(affine.n_scheduling, 0, -1)]
     a, b, c, d = (part[functions] for part in (affine.a, affine.b, affine.c, affine.d))
@@ -110,10 +107,9 @@ def affine_model(estimate: AffineEstimate) -> Model:
 def affine_estimate(model: Model) -> tuple[AffineEstimate, FloatArray | None]:
     """The affine model that `frozen` made this one of, as it is now, and the joint covariance of θ and the effects."""
     assert model.chart is not None, "made by `frozen`"
-    variables = model.dependence.variables
-    sizes = AffineSizes(model.structure.order, len(variables), 1, 1)
+    sizes = AffineSizes.like(model)
     back = np.argsort(sizes.in_products)
-    affine = sizes.model(model.theta[back], model.structure.sample_time or 0.0, variables)
+    affine = sizes.model(model.theta[back], model.structure.sample_time or 0.0, model.variables)
     joint = None if model.joint_covariance is None else _on_both_sides(model.chart[back], model.joint_covariance)
     covariance = None if joint is None else joint[: sizes.size, : sizes.size]
     return AffineEstimate(affine, Outcome("converged"), (), covariance), joint

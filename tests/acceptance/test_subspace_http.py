@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from app.files import mat_writer
+from identification.models.state_space_model import stacks
 from tests.support import paper, responses
 from tests.support.api import Api, Json, pointers
 
@@ -102,8 +103,8 @@ def test_noise_free_responses_give_the_plant_itself(api: Api, plant: Json, exact
     model = identified(api, plant, exact, parametricEstimator={**PARAMETRIC, "weighting": "none"})
     found = model["stateSpace"]
     truth = responses.true_plant()
-    for name in "abcd":
-        assert np.allclose(found["matrices"][f"matrix{name.upper()}"], getattr(truth, name), atol=1e-9), name
+    for name, matrices in zip("ABCD", stacks(truth), strict=True):
+        assert np.allclose(found["matrices"][f"matrix{name}"], matrices, atol=1e-9), name
     assert found["chosenRows"]["counts"] == [2, 1]
     assert 0 < found["chosenRows"]["worstSingularValue"] <= 1
     assert [error["experimentId"] for error in found["errors"]] == exact

@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from identification.along import simulate_along, simulate_state_space
+from identification.along import simulate_along
 from identification.bases.polynomial import Polynomial
 from identification.errors import MisuseError, RangeError
 from identification.models.model import Model
 from identification.models.rational import RationalStructure
-from identification.parameter_varying import ParameterVaryingStateSpace
+from identification.models.state_space_model import state_space_model
 from identification.scheduling import ParameterDependence, ProductBasis, SchedulingVariable
 from identification.simulation import simulate
 from tests.identification.varying.models import random_model
@@ -72,12 +72,11 @@ def test_the_deviation_is_that_of_the_parameters_to_first_order() -> None:
 def test_state_space_models_of_frozen_points_follow_p_too() -> None:
     affine = random_model(np.random.default_rng(3), 2, 1, 2, 2)
     u, p = np.random.default_rng(4).standard_normal((SAMPLES, 2)), signals()[1]
-    frozen = ParameterVaryingStateSpace((VARIABLE,), AFFINE, affine.a, affine.b, affine.c, affine.d, 1.0)
-    assert np.allclose(simulate_state_space(frozen, u, p).output, affine.simulate(u, p))
+    matrices = (affine.a, affine.b, affine.c, affine.d)
+    frozen = state_space_model((VARIABLE,), (AFFINE,) * 4, matrices, 1.0)
+    assert np.allclose(simulate_along(frozen, u, p, covariance_known=False).output, affine.simulate(u, p))
     with pytest.raises(MisuseError, match="discrete"):
-        simulate_state_space(
-            ParameterVaryingStateSpace((VARIABLE,), AFFINE, affine.a, affine.b, affine.c, affine.d), u, p
-        )
+        simulate_along(state_space_model((VARIABLE,), (AFFINE,) * 4, matrices, None), u, p)
 
 
 def test_misuse_is_refused() -> None:

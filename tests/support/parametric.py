@@ -3,7 +3,7 @@
 import numpy as np
 
 from identification.bases.polynomial import Polynomial
-from identification.parameter_varying import ParameterVaryingStateSpace
+from identification.models.state_space_model import state_space_model
 from identification.scheduling import ParameterDependence, ProductBasis, SchedulingVariable
 from identification.signals import FrequencyResponse
 
@@ -60,7 +60,7 @@ def canonical_plant(generator, counts, inputs, depends, sample_time):
         a[1:, start + counts[y] - 1] = 0.04 * g.standard_normal((sizes[0] - 1, order))
     b = g.standard_normal((sizes[1], order, inputs))
     d = g.standard_normal((sizes[3], outputs, inputs))
-    return ParameterVaryingStateSpace(depends.variables, depends.bases, a, b, c, d, sample_time)
+    return state_space_model(depends.variables, depends.bases, (a, b, c, d), sample_time)
 
 
 def dense_plant(generator, depends, sample_time):
@@ -70,7 +70,7 @@ def dense_plant(generator, depends, sample_time):
         [[[[0.5, 0.6, 0], [-0.6, 0.5, 0.1], [0.2, 0, -0.5]]], 0.15 * g.standard_normal((sizes[0] - 1, 3, 3))]
     )
     b, c, d = (g.standard_normal((j, *s)) for j, s in zip(sizes[1:], [(3, 2), (2, 3), (2, 2)], strict=True))
-    return ParameterVaryingStateSpace(depends.variables, depends.bases, a, b, c, d, sample_time)
+    return state_space_model(depends.variables, depends.bases, (a, b, c, d), sample_time)
 
 
 def responses(plant, points, omega, generator=None, level=0.0, variances=False):
@@ -81,7 +81,7 @@ def responses(plant, points, omega, generator=None, level=0.0, variances=False):
         size = level * np.sqrt(np.mean(abs(clean) ** 2))
         noise = 0.0 if generator is None else generator.standard_normal((*clean.shape, 2)) @ [1, 1j] * size / np.sqrt(2)
         variance = np.full(clean.shape, size**2) if variances else None
-        result.append(FrequencyResponse(omega, clean + noise, tuple(point), plant.sample_time, variance))
+        result.append(FrequencyResponse(omega, clean + noise, tuple(point), plant.structure.sample_time, variance))
     return result
 
 

@@ -6,7 +6,8 @@ import numpy as np
 
 from identification.arrays import ComplexArray, FloatArray
 from identification.bases.polynomial import Polynomial
-from identification.parameter_varying import ParameterVaryingStateSpace
+from identification.models.model import Model
+from identification.models.state_space_model import state_space_model
 from identification.scheduling import ProductBasis, SchedulingVariable
 from identification.signals import FrequencyResponse
 from tests.support.api import Json
@@ -28,7 +29,7 @@ PLANT: Json = {
 }
 
 
-def true_plant() -> ParameterVaryingStateSpace:
+def true_plant() -> Model:
     """In observability canonical form: output 1 shows states 1 and 3, output 2 state 2; A is affine in the speed."""
     affine, constant = ProductBasis((Polynomial(1),)), ProductBasis((Polynomial(0),))
     a = np.array(
@@ -40,7 +41,7 @@ def true_plant() -> ParameterVaryingStateSpace:
     b = np.array([[[1.0, 0.2], [0.3, -0.8], [0.5, 0.4]]])
     c = np.array([[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]])
     d = np.array([[[0.0, 0.1], [0.2, 0.0]]])
-    return ParameterVaryingStateSpace((SPEED,), (affine, constant, constant, constant), a, b, c, d, 1.0)
+    return state_space_model((SPEED,), (affine, constant, constant, constant), (a, b, c, d), 1.0)
 
 
 def measured(point: float, deviation: float = 0.0, seed: int = 0) -> FrequencyResponse:

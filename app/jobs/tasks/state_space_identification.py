@@ -20,8 +20,8 @@ from app.schemas.plants import Plant
 from app.schemas.plug_ins import PlugInDocument
 from app.schemas.state_space import StateSpaceModelRequest
 from identification.errors import MisuseError
+from identification.estimates import Estimate
 from identification.parametric.estimate import ParametricEstimate
-from identification.parametric.state_space_likelihood import LikelihoodEstimate
 from identification.scheduling import ParameterDependence
 from identification.signals import FrequencyResponse, Measurement
 from identification.subspace.result import SubspaceEstimate
@@ -103,14 +103,14 @@ def _refined(
     found: ParametricEstimate,
     data: Sequence[FrequencyResponse],
     context: TaskContext,
-) -> LikelihoodEstimate | None:
+) -> Estimate | None:
     """The refined estimate; None where none is asked for, or where the model found is no start for one."""
     if request.refinement is None or not found.outcome.ok:
         return None
     context.progress(0.6, "refinement")
     fields = _fields(request.refinement, "/refinement", "/experimentIds")
     with field_named({**fields, "start": "/refinement"}, "/experimentIds"):
-        refined: LikelihoodEstimate = request.refinement.build().estimate(found.model, data)
+        refined: Estimate = request.refinement.build().estimate(found.model, data)
     return refined
 
 

@@ -5,8 +5,8 @@ import pytest
 
 from identification.bases.polynomial import Polynomial
 from identification.errors import MisuseError, RangeError, ShapeError
+from identification.models.state_space_model import stacks, state_space_model
 from identification.models.system import StateSpace
-from identification.parameter_varying import ParameterVaryingStateSpace
 from identification.scheduling import ProductBasis, SchedulingVariable
 from tests.support.state_space import random_system
 
@@ -86,18 +86,17 @@ def varying():
     variables = (SchedulingVariable("p", "", 0.0, 1.0), SchedulingVariable("r", "", -1.0, 1.0))
     affine, constant = ProductBasis((Polynomial(1), Polynomial(1)), 1), ProductBasis((Polynomial(0), Polynomial(0)))
     shapes = (3, 3, 3), (1, 3, 2), (3, 2, 3), (1, 2, 2)
-    return ParameterVaryingStateSpace(
-        variables, (affine, constant, affine, constant), *(0.2 * g.standard_normal(s) for s in shapes), 0.5
-    )
+    matrices = tuple(0.2 * g.standard_normal(s) for s in shapes)
+    return state_space_model(variables, (affine, constant, affine, constant), matrices, 0.5)
 
 
 def test_affine_matrices_at_frozen_points():
     model, points = varying(), np.array([[0.3, -0.5], [1.0, 1.0]])
-    frozen = model.at(points)
+    (a, b, _, _), frozen = stacks(model), model.structure.matrices(model.coefficients(points))
     # The functions in order: 1, r, p.
-    assert np.allclose(frozen.a[0], model.a[0] - 0.5 * model.a[1] + 0.3 * model.a[2])
-    assert np.allclose(frozen.b, model.b[0])
-    one = StateSpace(frozen.a[1], frozen.b[1], frozen.c[1], frozen.d[1], 0.5)
+    assert np.allclose(frozen[0][0], a[0] - 0.5 * a[1] + 0.3 * a[2])
+    assert np.allclose(frozen[1], b[0])
+    one = StateSpace(*(part[1] for part in frozen), 0.5)
     assert np.allclose(model.frequency_response(points, OMEGA)[1], direct(one, OMEGA))
     assert np.allclose(np.sort_complex(model.poles(points)[1]), np.sort_complex(one.poles))
     assert np.array_equal(model.stable(points), abs(model.poles(points)).max(axis=1) < 1)
@@ -106,8 +105,8 @@ def test_affine_matrices_at_frozen_points():
 def test_misuse_of_bases():
     model = varying()
     with pytest.raises(ShapeError, match="one per function"):
-        ParameterVaryingStateSpace(model.variables, model.bases[0], model.a, model.b, model.c, model.d)
+        state_space_model(model.variables, model.dependence.bases[:1] * 4, stacks(model), 0.5)
     with pytest.raises(ShapeError, match="bases"):
-        ParameterVaryingStateSpace(model.variables, model.bases[:2], model.a, model.b, model.c, model.d)
+        state_space_model(model.variables, model.dependence.bases[:2], stacks(model), 0.5)
     with pytest.raises(RangeError, match="range"):
         model.poles([[2.0, 0.0]])

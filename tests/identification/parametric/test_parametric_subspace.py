@@ -6,6 +6,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from identification.errors import MisuseError, NotIdentifiableError, RangeError, ShapeError, TooFewOperatingPointsError
+from identification.models.state_space_model import stacks
 from identification.parametric.parametric_subspace import ParametricSubspace
 from identification.pole_regions.cone import Cone
 from identification.pole_regions.disc import Disc
@@ -43,7 +44,11 @@ def test_the_example_of_the_paper_comes_back(weighting, region, accuracy):
         truth = example_response(p)
         response = found.model.frequency_response([[p]], LINES)[0, :, 0, 0]
         assert abs(response - truth).max() < accuracy * abs(truth).max()
-        assert np.allclose(np.poly(found.model.at([[p]]).a[0]), [1, 0.01 * p, 0.99], atol=accuracy)
+        assert np.allclose(
+            np.poly(found.model.structure.matrices(found.model.coefficients([[p]]))[0][0]),
+            [1, 0.01 * p, 0.99],
+            atol=accuracy,
+        )
     assert max(error.relative for error in found.errors) < accuracy
 
 
@@ -80,7 +85,7 @@ def test_two_scheduling_variables_and_constant_b_and_d():
     assert found.outcome.ok
     assert found.region.where == "whole range"
     assert found.region.points == 4
-    assert len(found.model.b) == len(found.model.d) == 1
+    assert [len(part) for part in stacks(found.model)][1::2] == [1, 1]
     assert worst_relative_error(found.model, plant, random_points(TWO, 20), np.linspace(0.1, 6, 50)) < 1e-6
 
 

@@ -1,13 +1,16 @@
 """Maximum likelihood of parametric state-space models: exact gradient, true covariance, nothing tied to the basis."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from identification.errors import MisuseError, NotIdentifiableError
-from identification.parameter_varying import ParameterVaryingStateSpace
+from identification.models.chart import gauge_tangent
+from identification.models.state_space_model import stacks, state_space_model
 from identification.parametric.parametric_subspace import ParametricSubspace
 from identification.parametric.state_space_likelihood import StateSpaceLikelihood
-from identification.parametric.state_space_residuals import StateSpaceParameters, residual_and_jacobian, whitener
+from identification.parametric.state_space_residuals import residual_and_jacobian, whitener
 from identification.pole_regions.disc import Disc
 from identification.signals import FrequencyResponse
 from tests.support.parametric import AFFINE, canonical_plant, dense_plant, dependence, example_data, responses
@@ -23,9 +26,8 @@ def noisy(seed, level=0.05):
 
 
 def started(data):
-    g, parameters = np.random.default_rng(len(data)), StateSpaceParameters(PLANT)
-    theta = parameters.vector(PLANT)
-    return parameters.model(theta * (1 + 0.02 * g.standard_normal(len(theta))))
+    g = np.random.default_rng(len(data))
+    return replace(PLANT, theta=PLANT.theta * (1 + 0.02 * g.standard_normal(len(PLANT.theta))))
 
 
 def test_the_gradient_is_that_of_the_residual():
@@ -34,14 +36,13 @@ def test_the_gradient_is_that_of_the_residual():
     root = g.standard_normal((4, 4)) + 1j * g.standard_normal((4, 4))
     covariance = np.broadcast_to(root @ root.conj().T + np.eye(4), (len(OMEGA), 4, 4))
     data[1] = FrequencyResponse(OMEGA, data[1].response, POINTS[1], 0.5, covariance=covariance)
-    parameters, weights = StateSpaceParameters(PLANT), [whitener(d) for d in data]
-    theta = parameters.vector(PLANT)
-    jacobian = residual_and_jacobian(parameters, theta, data, weights)[1]
+    weights, theta = [whitener(d) for d in data], PLANT.theta
+    jacobian = residual_and_jacobian(PLANT, data, weights)[1]
     for direction in g.standard_normal((5, len(theta))):
         step = 1e-6 * direction
-        plus, minus = (residual_and_jacobian(parameters, theta + s, data, weights)[0] for s in (step, -step))
+        plus, minus = (residual_and_jacobian(replace(PLANT, theta=theta + s), data, weights)[0] for s in (step, -step))
         assert np.allclose((plus - minus) / 2, jacobian @ step, atol=1e-9 * abs(jacobian @ step).max() + 1e-11)
-    idle = jacobian @ parameters.directions_without_effect(PLANT)
+    idle = jacobian @ gauge_tangent(PLANT.structure, PLANT.dependence, theta)
     assert abs(idle).max() < 1e-10 * abs(jacobian).max()
 
 
@@ -65,7 +66,7 @@ def test_the_covariance_is_that_of_the_estimates():
         assert found.outcome.ok
         error = (found.model.frequency_response(point, omega) - truth)[0]
         pair = np.stack([error.real, error.imag], axis=-1)
-        covariance = found.response_covariance(point, omega)[0]
+        covariance = found.model.response_covariance(point, omega)[0]
         distances.append(np.einsum("fyui,fyuij,fyuj->fyu", pair, np.linalg.inv(covariance), pair).mean())
         fits.append(found.tests[0].p_value)
     assert 1.6 < np.mean(distances) < 2.4
@@ -76,12 +77,9 @@ def test_the_covariance_is_that_of_the_estimates():
 def test_it_is_better_than_its_start():
     data = noisy(3, level=0.2)
     start = started(data)
-    parameters, weights = StateSpaceParameters(start), [whitener(d) for d in data]
+    weights = [whitener(d) for d in data]
     found = StateSpaceLikelihood().estimate(start, data).model
-    costs = [
-        np.sum(residual_and_jacobian(parameters, parameters.vector(m), data, weights)[0] ** 2)
-        for m in (start, found, PLANT)
-    ]
+    costs = [np.sum(residual_and_jacobian(m, data, weights)[0] ** 2) for m in (start, found, PLANT)]
     assert costs[1] < costs[0]
     assert costs[1] < costs[2]
 
@@ -91,12 +89,11 @@ def test_the_basis_of_the_state_does_not_matter():
     start = started(data)
     turn = np.random.default_rng(0).standard_normal((3, 3))
     back = np.linalg.inv(turn)
-    turned = ParameterVaryingStateSpace(
-        start.variables, start.bases, back @ start.a @ turn, back @ start.b, start.c @ turn, start.d, 0.5
-    )
+    a, b, c, d = stacks(start)
+    turned = state_space_model(start.variables, start.dependence.bases, (back @ a @ turn, back @ b, c @ turn, d), 0.5)
     one, other = (StateSpaceLikelihood().estimate(s, data) for s in (start, turned))
     responses_of = [e.model.frequency_response([[0.6]], OMEGA) for e in (one, other)]
-    covariances = [e.response_covariance([[0.6]], OMEGA) for e in (one, other)]
+    covariances = [e.model.response_covariance([[0.6]], OMEGA) for e in (one, other)]
     deviations = np.sqrt(np.trace(covariances[0], axis1=-2, axis2=-1))
     assert (abs(responses_of[0] - responses_of[1]) / deviations).max() < 0.02
     assert np.allclose(*covariances, rtol=0, atol=0.05 * deviations.max() ** 2)
@@ -107,7 +104,7 @@ def test_unknown_variances_are_estimated():
     known = responses(PLANT, POINTS, OMEGA, np.random.default_rng(8), 0.05, variances=True)
     found = StateSpaceLikelihood().estimate(started(data), data)
     assert found.tests == ()
-    assert found.noise_variance == pytest.approx(np.mean([d.variance[0, 0, 0] for d in known]), rel=0.3)
+    assert found.model.noise_variance == pytest.approx(np.mean([d.variance[0, 0, 0] for d in known]), rel=0.3)
 
 
 def test_poles_stay_in_the_region():

@@ -13,11 +13,13 @@ from identification.errors import MisuseError, NotIdentifiableError, ShapeError
 from identification.lti.rational_fit import RationalFit
 from identification.models.rational import RationalStructure
 from identification.outcome import Outcome
+from identification.scheduling import SchedulingVariable
 from identification.signals import TimeRecord
 from identification.spectral.periodic_average import PeriodicAverage
 from identification.varying.affine_estimate import AffineEstimate
 from identification.varying.affine_parameters import AffineSizes, balanced
 from identification.varying.affine_state_space import variance_accounted_for
+from identification.varying.frozen import affine_model
 from identification.varying.harmonic_blocks import HarmonicBlocks
 from identification.varying.harmonic_noise import harmonic_noise
 from identification.varying.periodic_likelihood import PeriodicLikelihood
@@ -121,7 +123,9 @@ def test_the_stated_deviation_of_a_simulated_output_is_that_over_runs() -> None:
 
 def test_local_and_varying_experiments_of_one_plant_agree_within_their_covariances() -> None:
     generator = np.random.default_rng(5)
-    varying = PeriodicLikelihood(1).estimate(disturbed(noise_free("multisine"), 0.1, False, generator), 2)
+    found = PeriodicLikelihood(1).estimate(disturbed(noise_free("multisine"), 0.1, False, generator), 2)
+    ranged = replace(found.model, variables=(SchedulingVariable("p", "", -1.0, 1.0),))
+    varying = affine_model(replace(found, model=ranged))
     omega = np.linspace(0.3, 2.8, 6)
     for point in (-0.6, 0.5):
         u = noise_free("multisine").input[:SAMPLES]
@@ -133,7 +137,7 @@ def test_local_and_varying_experiments_of_one_plant_agree_within_their_covarianc
         parts = np.stack([gradient.real, gradient.imag], axis=-1)
         of_local = np.einsum("afi,ab,bfj->fij", parts, local.covariance, parts)
         at = np.array([[point]])
-        difference = varying.model.frequency_response(at, omega)[0, :, 0, 0]
+        difference = varying.frequency_response(at, omega)[0, :, 0, 0]
         difference = difference - structure.plant_response(local.zeta, omega)
         d = np.stack([difference.real, difference.imag], axis=-1)
         of_varying = varying.response_covariance(at, omega)[0, :, 0, 0]
