@@ -9,7 +9,15 @@ from app.arrays import ComplexVector
 from app.conversion.effects import effect_documents, parameters_of, quantity_of
 from app.conversion.models import outcome_document, test_documents
 from app.schemas.comparisons import NoteDocument
-from app.schemas.diagnoses import EffectVisibility, Evidence, ExplainedResponse, MissingResponse, RankedEffect, Verdict
+from app.schemas.diagnoses import (
+    EffectVisibility,
+    Evidence,
+    ExplainedResponse,
+    MissingResponse,
+    RankedEffect,
+    VariationDocument,
+    Verdict,
+)
 from app.schemas.effects import PlacedEffectDocument
 from app.schemas.experiments import Experiment
 from identification.diagnosis import evidence as refits
@@ -17,6 +25,7 @@ from identification.diagnosis.diagnose import Diagnosis, Visibility
 from identification.diagnosis.missing import explained_response, missing_response
 from identification.diagnosis.remainder import MATERIAL
 from identification.diagnosis.scores import Score
+from identification.diagnosis.variances import Variation
 
 LAID_OVER = 3
 VERDICTS: dict[str, Verdict] = {
@@ -40,6 +49,7 @@ def findings(found: Diagnosis, experiments: Sequence[Experiment]) -> dict[str, A
         "restAfter": found.rest_after,
         "material": MATERIAL,
         "noneOfTheseWeight": found.none_weight,
+        "variations": [_variation(one, found.variation).as_json() for one in _variations(found)],
         "notes": [NoteDocument(experiment_id=experiments[m].id, text=text).as_json() for m, text in found.notes],
         "confident": bool(found.confident),
         "announced": [one.score.candidate.effect.kind for one in found.announced],
@@ -98,6 +108,22 @@ def _without_interval(one: refits.Evidence) -> PlacedEffectDocument:
         return found
     parameters = [each.model_copy(update={"standard_deviation": None}) for each in found.parameters]
     return found.model_copy(update={"standard_deviations": None, "parameters": parameters})
+
+
+def _variations(found: Diagnosis) -> list[Variation]:
+    return [*([] if found.variation is None else [found.variation]), *found.variations]
+
+
+def _variation(one: Variation, chosen: Variation | None) -> VariationDocument:
+    return VariationDocument(
+        kind=one.effect.kind,
+        title=one.effect.title,
+        unit=one.effect.unit,
+        size=one.size,
+        p_value=one.p_value,
+        explains=one is chosen,
+        advice=one.effect.advice,
+    )
 
 
 def _visibility(one: Visibility) -> EffectVisibility:

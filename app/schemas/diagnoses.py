@@ -125,6 +125,18 @@ class MissingResponse(CamelModel):
     )
 
 
+class VariationDocument(CamelModel):
+    """An effect that changes the variance and not the mean."""
+
+    kind: str
+    title: str
+    unit: str
+    size: Double = Field(description="its standard deviation, by restricted likelihood")
+    p_value: Double = Field(description="of its score test, for all variants")
+    explains: bool = Field(description="whether it explains all that is missing, better than every effect on the mean")
+    advice: str
+
+
 class Diagnosis(CamelModel):
     """Which missing effect the measurements point to."""
 
@@ -153,6 +165,9 @@ class Diagnosis(CamelModel):
     rest_after: Double | None = Field(default=None, description="the same with the best announced effect")
     material: Double | None = Field(default=None, description="the rest below which nothing is called missing")
     none_of_these_weight: Double | None = Field(default=None, description="the weight that the effects leave")
+    variations: list[VariationDocument] = Field(
+        default_factory=list, description="what differs from record to record or within records"
+    )
     notes: list[NoteDocument] = Field(default_factory=list, description="what to mind of single experiments")
     confident: bool = Field(description="one effect has over 95 % of the weight of all and explains what is missing")
     announced: list[str] = Field(description="kinds that cannot be told apart here, best first; empty when none")

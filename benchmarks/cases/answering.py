@@ -62,6 +62,8 @@ def announced(steps: Sequence[Step]) -> list[str]:
     """The kinds that were added, in order, then those that could not be told apart from the first of them."""
     kinds = [one.effect.kind for one in steps[-1].model.effects]
     alike = [one.score.candidate.effect.kind for one in steps[0].diagnosis.announced]
+    varies = steps[-1].diagnosis.variation
+    kinds += [] if varies is None else [varies.effect.kind]
     return list(dict.fromkeys([*kinds, *(alike if not kinds or kinds[0] in alike else [])]))
 
 

@@ -1,7 +1,7 @@
 """Measurements on a common frequency grid, ready to be compared with a model line by line."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -29,12 +29,14 @@ class Batch:
     `half_width` + 1 lines were pooled. `signals` (M, L) the input over one period, None for frequency responses.
     `nuisance` (M, n, L): signals of any size in the mean period, such as a slow trend, which are not compared; rows
     of zeros where there are fewer. `ends` (M, 2, L): what correlated noise at the ends of a record does to the mean
-    period, see `noise.NoiseOfMean`. `scaled`: False when only the ratios of the variances are known. `members`:
-    places in the user's list. `logged`: quantities (M,) that were written down beside the scheduling variables, by
-    their names. `disturbances`: of each record, taken off the outputs; `smoothed`: whether the responses stand for
-    records that do not repeat; `notes`: what else is to be said of measurements, by their place in the list.
-    `held`: how models in continuous time see the input, None where it is band limited; `hold_stated`: that was
-    said. `channels`: what input and output are.
+    period, see `noise.NoiseOfMean`. `varied` (M, n, K): changes of the output that each record has by a random
+    factor of unit variance. `slopes` (M, K): Σ c_p Y_p with c_p ∝ p − (P + 1)/2 and Σ c_p² = 1/P, how the P periods
+    change from first to last, with the variance of the mean. `scaled`: False when only the ratios of the variances
+    are known. `members`: places in the user's list. `logged`: quantities (M,) that were written down beside the
+    scheduling variables, by their names. `disturbances`: of each record, taken off the outputs; `smoothed`: whether
+    the responses stand for records that do not repeat; `notes`: what else is to be said of measurements, by their
+    place in the list. `held`: how models in continuous time see the input, None where it is band limited;
+    `hold_stated`: that was said. `channels`: what input and output are.
     """
 
     points: FloatArray
@@ -51,6 +53,8 @@ class Batch:
     half_width: int = 0
     ends: FloatArray | None = None
     nuisance: FloatArray | None = None
+    varied: ComplexArray | None = None
+    slopes: ComplexArray | None = None
     scaled: bool = True
     between: tuple[FloatArray, ...] = field(default=())
     disturbances: tuple[tuple[Disturbance, ...], ...] = ()
@@ -95,11 +99,30 @@ class Batch:
     def whiten(self, spectra: ComplexArray) -> FloatArray:
         """Spectra (…, M, K) as uncorrelated rows of unit variance (…, M·2·K): real, then imaginary parts by record."""
         rows = self._weighted(spectra)
-        if self._jumps is not None:
-            directions, factors = self._jumps
-            part = np.einsum("...mr,mir->...mi", rows, directions) * factors
-            rows += np.einsum("...mi,mir->...mr", part, directions)
+        for found in (self._jumps, self._of_varied):
+            if found is not None:
+                directions, factors = found
+                part = np.einsum("...mr,mir->...mi", rows, directions) * factors
+                rows += np.einsum("...mi,mir->...mr", part, directions)
         return rows.reshape(*spectra.shape[:-2], -1)
+
+    @cached_property
+    def _of_varied(self) -> tuple[FloatArray, FloatArray] | None:
+        """Axes of I + B Bᵀ, B the whitened random changes of each record, and v^−½ − 1 (M, n)."""
+        if self.varied is None:
+            return None
+        rows = np.moveaxis(replace(self, varied=None)._unfolded(np.moveaxis(self.varied, 1, 0)), 0, 1)
+        _, sizes, axes = np.linalg.svd(rows, full_matrices=False)
+        return axes, (1 + sizes**2) ** -0.5 - 1
+
+    @property
+    def log_determinant(self) -> float:
+        """ln det of the variance with what varies from record to record, against that without."""
+        return 0.0 if self._of_varied is None else float(-2 * np.sum(np.log1p(self._of_varied[1])))
+
+    def _unfolded(self, spectra: ComplexArray) -> FloatArray:
+        """Whitened rows by record, (…, M, 2K)."""
+        return self.whiten(spectra).reshape(*spectra.shape[:-1], -1)
 
     def _weighted(self, spectra: ComplexArray) -> FloatArray:
         rows = np.empty((*spectra.shape[:-1], 2, spectra.shape[-1]))

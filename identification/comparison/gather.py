@@ -104,6 +104,7 @@ def _joined(group: list[Batch]) -> Batch:
         half_width=first.half_width,
         ends=ends,
         nuisance=_padded(nuisances) if nuisances else None,
+        slopes=None if first.slopes is None else np.concatenate([p.slopes for p in group if p.slopes is not None]),
         scaled=first.scaled,
         smoothed=first.smoothed,
         held=first.held,
@@ -203,6 +204,7 @@ def _of_periodic(m: int, record: TimeRecord, mean_value: bool) -> Batch:
         half_width=noise.half_width,
         ends=noise.ends[None],
         nuisance=left_in_mean(period, 0 if trend is None else trend.degree, count, walks)[None],
+        slopes=_slopes(y)[None],
         between=(between_harmonics(level, count),),
         disturbances=(disturbances,),
         channels=record.channels,
@@ -211,6 +213,12 @@ def _of_periodic(m: int, record: TimeRecord, mean_value: bool) -> Batch:
             *([(m, SLOW)] if trend is not None else [(m, WALKS)] if walks else []),
         ),
     )
+
+
+def _slopes(spectra: ComplexArray) -> ComplexArray:
+    """Σ c_p Y_p of spectra (P, K), c_p ∝ p − (P + 1)/2 and Σ c_p² = 1/P."""
+    place = np.arange(len(spectra)) - (len(spectra) - 1) / 2
+    return np.asarray(place / np.sqrt(len(spectra) * np.sum(place**2)) @ spectra)
 
 
 def _notes(m: int, noise: NoiseOfMean, step: float) -> tuple[tuple[int, str], ...]:

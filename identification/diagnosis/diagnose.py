@@ -8,10 +8,11 @@ import numpy as np
 from identification.arrays import FloatArray
 from identification.comparison.batch import Batch
 from identification.comparison.lack_of_fit import lack_of_fit
-from identification.diagnosis.evidence import LONGER, Evidence, ShortList, indistinguishable, refit_short_list
+from identification.diagnosis.evidence import LONGER, STRICT, Evidence, ShortList, indistinguishable, refit_short_list
 from identification.diagnosis.remainder import SmoothRemainder, rest
 from identification.diagnosis.scores import Score, score_tests
 from identification.diagnosis.signatures import Candidate, candidates
+from identification.diagnosis.variances import Variation, describe, evenly_explained, variations, varied
 from identification.diagnosis.verdict import PARTLY, Rest, Verdict, judged, why_not_all, why_not_judged
 from identification.effects.library import library
 from identification.effects.second_variable import with_logged
@@ -48,9 +49,10 @@ class Diagnosis:
     visible effects, smallest adjusted p first; `evidence`: the refitted short list, best first; `announced`: those
     of it that cannot be told apart, empty when no effect passes the test of the whole family at 5 % or none is
     better than "none of these", whose share of all weights is `none_weight`; `reason` for the verdict;
-    `rest_before`, `rest_after`: what is left beyond noise, relative to the output; `notes` on measurements by their
-    places; `confusability` (E, E): squared cosine between the signatures of `scores`; `visibility` of every effect
-    of the library.
+    `rest_before`, `rest_after`: what is left beyond noise, relative to the output; `variation`: an effect on the
+    variance that explains all that is missing, `variations`: those that show in how the periods differ; `notes` on
+    measurements by their places; `confusability` (E, E): squared cosine between the signatures of `scores`;
+    `visibility` of every effect of the library.
     """
 
     base: Fit
@@ -68,6 +70,8 @@ class Diagnosis:
     rest_after: float = 0.0
     none_weight: float = 1.0
     notes: tuple[tuple[int, str], ...] = ()
+    variations: tuple[Variation, ...] = ()
+    variation: Variation | None = None
 
     @property
     def best(self) -> Evidence | None:
@@ -127,7 +131,13 @@ def diagnose(
     announced = () if cannot else _announced(listed)
     before = _rest("lack of fit", base, seed)
     after = _rest("remaining lack of fit", announced[0].fit, seed) if announced else before
-    verdict, reason = judged(before, after, announced, cannot, why_not_all(batches))
+    found = variations(base, np.random.default_rng(seed)) if rows.scaled and not cannot else ()
+    varying = _instead(model, base, before, listed.evidence if announced or not before.acceptable else (), found)
+    if varying is None:
+        verdict, reason = judged(before, after, announced, cannot, why_not_all(batches))
+    else:
+        announced, after = (), varying[1]
+        verdict, reason = "explained", f"{describe(varying[0])}; {after.words}; {varying[0].effect.advice}"
     return Diagnosis(
         base,
         before.test,
@@ -144,7 +154,45 @@ def diagnose(
         after.share,
         listed.none_weight,
         tuple(sorted(note for batch in batches for note in batch.notes)),
+        tuple(one for one in found if one.p_value < STRICT and one.effect.of_periods),
+        None if varying is None else varying[0],
     )
+
+
+def _instead(
+    model: Model, base: Fit, before: Rest, evidence: Sequence[Evidence], found: Sequence[Variation]
+) -> tuple[Variation, Rest] | None:
+    """An effect on the variance that explains all that is missing, better than every effect on the mean; and the rest.
+
+    −2 ln L with its variance, ln R for its size and 2 ln(variants) are held against the BIC of the others. A parameter
+    that was seen to drift within the records is elsewhere in each by as much, and comes before a misplaced point.
+    """
+    if before.acceptable and not evidence:
+        return None
+    for one in sorted(found, key=lambda each: -each.gain):
+        if one.p_value >= STRICT:
+            continue
+        rivals = [each for each in evidence if not (one.effect.of_periods and each.misplaced)]
+        rows = Rows(varied(base, one), base.rows.scales)
+        grown = fit(model, rows, iterations=LONGER)
+        left = _beyond(before, misfit("lack of fit with the variance", grown))
+        price = np.log(rows.count) + 2 * np.log(one.variants)
+        bic = float(grown.residual @ grown.residual) + _spread_out(rows) + price
+        shaped = one.effect.power(base.flows[0]) is None or evenly_explained(grown)
+        if left.acceptable and shaped and all(bic < other.bic for other in rivals):
+            return one, left
+    return None
+
+
+def _beyond(before: Rest, after: TestResult) -> Rest:
+    """What a variance leaves: of what was left before the same part as of χ² beyond its degrees of freedom."""
+    excess, was = (max(one.statistic - one.degrees_of_freedom, 0.0) for one in (after, before.test))
+    return Rest(after, before.share * float(np.sqrt(excess / max(was, 1.0))))
+
+
+def _spread_out(rows: Rows) -> float:
+    """ln det of the variance of the records against that of the noise alone."""
+    return sum(batch.log_determinant for batch in rows.batches)
 
 
 def _announced(listed: ShortList) -> tuple[Evidence, ...]:

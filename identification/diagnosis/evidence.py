@@ -10,6 +10,7 @@ from identification.comparison.lack_of_fit import lack_of_fit
 from identification.diagnosis.remainder import MATERIAL, Remainder, SmoothRemainder, rest
 from identification.diagnosis.scans import misfit_is_large, scanned_starts, states_scan
 from identification.diagnosis.scores import Score
+from identification.effects.misplaced_point import MisplacedPoint
 from identification.extension.fit import Fit, fit
 from identification.extension.rows import Rows
 from identification.models.model import Model
@@ -50,6 +51,11 @@ class Evidence:
     def explained_per_parameter(self) -> float:
         """χ² explained for each added parameter."""
         return self.explained / self.parameters
+
+    @property
+    def misplaced(self) -> bool:
+        """Whether it is an operating point logged wrongly."""
+        return isinstance(self.fit.model.effects[-1].effect, MisplacedPoint)
 
     @property
     def announceable(self) -> bool:

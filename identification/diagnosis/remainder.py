@@ -103,6 +103,8 @@ def rest(found: Fit, noise: float = 1.0) -> float:
     for batch, flow, scale in zip(found.rows.batches, found.flows, found.rows.scales, strict=True):
         used = np.isfinite(batch.variances)
         expected = share * noise * scale**2 * np.where(batch.real, 0.5, 1.0) * batch.variances
+        if batch.varied is not None:
+            expected = expected + np.sum(abs(batch.varied) ** 2, axis=1)
         left += float(np.sum(np.where(used, abs(batch.outputs - flow.output) ** 2 - expected, 0.0)))
         size += float(np.sum(np.where(used & (batch.classes == EXCITED), abs(batch.outputs) ** 2, 0.0)))
     return float(np.sqrt(max(left, 0.0) / size)) if size > 0 else 0.0

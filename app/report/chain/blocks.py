@@ -8,7 +8,7 @@ from app.report.figures.effects import confusability, ranking, visibility
 from app.report.figures.misfit import misfit_by_band, misfit_by_class, misfit_by_point, overall_table
 from app.report.figures.misfit_map import MapRow, misfit_map
 from app.report.figures.missing import missing
-from app.report.numbers import percent
+from app.report.numbers import percent, significant
 from app.schemas.comparisons import ComparisonPart
 from app.schemas.diagnoses import Diagnosis
 
@@ -35,6 +35,10 @@ def diagnosis_text(diagnosis: Diagnosis) -> str:
     titles = {one.kind: one.title for one in diagnosis.ranking}
     names = ", ".join(titles.get(kind, kind) for kind in diagnosis.announced)
     reason = f" {diagnosis.reason[0].upper()}{diagnosis.reason[1:]}." if diagnosis.reason else ""
+    for one in diagnosis.variations:
+        reason += (
+            "" if one.explains else f" Found too: {one.title} ({significant(one.size)}, {one.unit}); {one.advice}."
+        )
     if not names:
         return VERDICTS[diagnosis.verdict] + reason
     held = diagnosis.ranking[0].evidence is not None and diagnosis.ranking[0].evidence.at_bound

@@ -1,6 +1,6 @@
 // What a diagnosis says in plain words.
 
-import { percent, probability } from "../numbers.js";
+import { percent, probability, significant } from "../numbers.js";
 
 export const VERDICTS = {
   nothingMissing: { kind: "success", short: "nothing missing", text: "Nothing is missing that these experiments could show." },
@@ -15,6 +15,7 @@ export function reasons(diagnosis) {
   const titles = new Map(diagnosis.ranking.map((one) => [one.kind, one.title]));
   const names = diagnosis.announced.map((kind) => titles.get(kind) ?? kind);
   const found = diagnosis.reason ? [`${diagnosis.reason.charAt(0).toUpperCase()}${diagnosis.reason.slice(1)}.`] : [];
+  for (const one of diagnosis.variations ?? []) if (!one.explains) found.unshift(`${one.title}: ${significant(one.size)} (${one.unit}; p-value ${probability(one.pValue)}). ${one.advice}.`);
   if (names.length === 1) found.push(`Announced: ${names[0]}, with ${percent(diagnosis.ranking[0].evidence.weight)} of the weight of all that was tried.`);
   if (names.length > 1) found.push(`These cannot be told apart here: ${names.slice(0, -1).join(", ")} and ${names.at(-1)}. Another experiment must decide.`);
   if (names.length) found.push(`The best effect takes away ${percent(diagnosis.explainedShare)} of what noise does not explain; what then remains has a p-value of ${probability(diagnosis.remaining.pValue)}.`);

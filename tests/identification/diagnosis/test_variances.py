@@ -1,0 +1,119 @@
+"""What varies from record to record, drifts within one, or is rounded: named as such, and nothing else for it."""
+
+import numpy as np
+import pytest
+from scipy.signal import cont2discrete, lfilter
+
+from identification.comparison.gather import gather
+from identification.diagnosis.diagnose import diagnose
+from identification.diagnosis.variances import variations
+from identification.effects.library import library, variance_library
+from identification.extension.fit import fit
+from identification.extension.rows import Rows
+from identification.signals import TimeRecord
+from tests.support.oscillators import MODEL, OMEGA, PERIOD, POINTS, SAMPLE_TIME, linear, phasors, played, records
+
+TWICE = tuple(p for p in POINTS for _ in range(2))
+
+
+def made(seed, stiffness, sigma=2e-3, extra=None):
+    """Two records at every point, the stiffness of each off by what is given (as a part of it)."""
+    g = np.random.default_rng(seed)
+    inputs = [phasors(g) for _ in TWICE]
+    off = [s * (30 + 10 * p) / 10 for s, p in zip(stiffness(g), TWICE, strict=True)]
+    outputs = [(a, linear(p + o, a, extra)) for p, o, a in zip(TWICE, off, inputs, strict=True)]
+    return gather(records(outputs, g, sigma, points=TWICE))
+
+
+def random_stiffness(size):
+    return lambda g: size * g.standard_normal(len(TWICE))
+
+
+def nothing(g):
+    return np.zeros(len(TWICE))
+
+
+def test_a_stiffness_that_is_another_in_every_record_is_no_misplaced_point():
+    for seed in range(4):
+        found = diagnose(MODEL, made(seed, random_stiffness(0.02)), seed=seed)
+        assert found.variation is not None
+        assert found.variation.effect.kind == "record_variation"
+        assert found.variation.effect.coefficient == 1
+        assert 0.01 < found.variation.size < 0.04
+        assert (found.verdict, found.announced) == ("explained", ())
+        assert "log with every experiment" in found.reason
+
+
+def test_a_misplaced_point_and_a_delay_are_no_variation_from_record_to_record():
+    def misplaced(g):
+        return np.where(np.array(TWICE) == 0.5, 0.05, 0.0)
+
+    found = diagnose(MODEL, made(5, misplaced))
+    assert found.variation is None
+    assert found.best.score.candidate.effect.kind == "misplaced_point"
+    late = diagnose(MODEL, made(6, nothing, extra=lambda w: np.exp(-0.02j * w)))
+    assert late.variation is None
+    assert late.best.score.candidate.effect.kind == "delay"
+
+
+def test_their_tests_keep_their_size_where_nothing_varies():
+    small = {one.kind: [] for one in variance_library()}
+    for seed in range(60):
+        base = fit(MODEL, Rows(made(seed, nothing)))
+        for one in variations(base, np.random.default_rng(seed)):
+            small[one.effect.kind].append(one.p_value)
+    for kind, p in small.items():
+        assert len(p) == 60, kind
+        assert np.mean(np.array(p) < 0.05) <= 0.15, kind
+
+
+def drifting(seed, slope, periods=6):
+    """The stiffness grows by `slope` (as a part of it) a period, filtered sample by sample, held input."""
+    g = np.random.default_rng(seed)
+    found = []
+    for p in POINTS:
+        u = np.tile(played(phasors(g), np.arange(PERIOD) * SAMPLE_TIME), periods + 2)
+        sign = g.choice([-1.0, 1.0])
+        y, state = np.zeros(len(u)), np.zeros(2)
+        for k in range(periods + 2):
+            stiffness = (30 + 10 * p) * (1 + sign * slope * (k - 2 - (periods - 1) / 2))
+            b, a, _ = cont2discrete(([1.0], [1.0, 1.5, stiffness]), SAMPLE_TIME)
+            part = slice(k * PERIOD, (k + 1) * PERIOD)
+            y[part], state = lfilter(b.ravel(), a, u[part], zi=state)
+        kept = slice(2 * PERIOD, None)
+        noisy = y[kept] + 2e-3 * g.standard_normal(periods * PERIOD)
+        found.append(TimeRecord(u[kept], noisy, SAMPLE_TIME, (p,), PERIOD, hold="zero"))
+    return gather(found)
+
+
+def test_a_drift_within_the_records_is_seen_in_the_periods():
+    found = diagnose(MODEL, drifting(1, 0.01))
+    (one,) = found.variations
+    assert (one.effect.kind, one.effect.coefficient) == ("drifting_parameter", 1)
+    assert one.size == pytest.approx(0.01, rel=0.4)
+    assert found.announced == ()
+    assert diagnose(MODEL, drifting(2, 0.0)).variations == ()
+
+
+def test_rounding_that_later_filtering_hides_is_named():
+    """A converter whose values were smoothed afterwards: no grid is left, and the error repeats with the period."""
+    g = np.random.default_rng(7)
+    found = []
+    for p in POINTS:
+        a = phasors(g)
+        y = linear(p, a)
+        white = np.tile(0.05 * (g.random(PERIOD) - 0.5), 4)
+        noisy = np.tile(y, 4) + white + 5e-4 * g.standard_normal(4 * PERIOD)
+        found.append(
+            TimeRecord(np.tile(played(a, np.arange(PERIOD) * SAMPLE_TIME), 4), noisy, SAMPLE_TIME, (p,), PERIOD)
+        )
+    one = diagnose(MODEL, gather(found)).variation
+    assert one.effect.kind == "quantisation"
+    assert one.size == pytest.approx(0.05, rel=0.1)
+
+
+def test_they_are_no_effects_on_the_mean():
+    kinds = {one.kind for one in variance_library()}
+    assert kinds == {"quantisation", "record_variation", "drifting_parameter"}
+    assert not kinds & {one.kind for one in library()}
+    assert len(OMEGA) > 5
