@@ -10,6 +10,7 @@ from identification.diagnosis.cross_validation import bears_out
 from identification.diagnosis.diagnose import Diagnosis, diagnose
 from identification.diagnosis.evidence import LONGER, on_bound
 from identification.diagnosis.exchange import looked_over
+from identification.diagnosis.remainder import MATERIAL
 from identification.diagnosis.verdict import Verdict
 from identification.extension.fit import Fit, fit
 from identification.models.model import Model
@@ -106,16 +107,28 @@ def _looked_over(
 def _grown(found: Diagnosis) -> Fit | None:
     """The model with the first of the announced effects that does not raise the error on data left out of the fit.
 
-    What was held by an end of its physical range is announced and not built on.
+    What was held by an end of its physical range is announced and not built on; so is, beside effects that are there
+    already, what changes the output by less than is material.
     """
     for one in (each for each in found.announced if not each.at_bound):
         try:
             grown = refined(one.fit)
-            if grown.outcome.ok and bears_out(found.base, grown):
+            matters = not found.base.model.effects or _changed(found.base, grown) >= MATERIAL
+            if grown.outcome.ok and matters and bears_out(found.base, grown):
                 return grown
         except NoSteadyStateError:
             continue
     return None
+
+
+def _changed(base: Fit, grown: Fit) -> float:
+    """‖Ŷ_grown − Ŷ‖/‖Y‖ over all compared lines."""
+    change = size = 0.0
+    for batch, before, after in zip(base.rows.batches, base.flows, grown.flows, strict=True):
+        used = np.isfinite(batch.variances)
+        change += float(np.sum(abs(after.output - before.output)[used] ** 2))
+        size += float(np.sum(abs(batch.outputs)[used] ** 2))
+    return float(np.sqrt(change / size))
 
 
 def refined(found: Fit) -> Fit:

@@ -9,6 +9,7 @@ from identification.arrays import FloatArray
 from identification.errors import MisuseError, NotIdentifiableError, RangeError
 from identification.estimates import LocalEstimate
 from identification.least_squares import LeastSquaresSolution, levenberg_marquardt
+from identification.lti.delay_search import aliases, coherent_delays, shortest
 from identification.lti.likelihood import require_same_sampling, response_errors
 from identification.lti.rational_basis import LinearProblem, frequency_scale, rescale
 from identification.lti.rational_start import linear_starts
@@ -21,6 +22,7 @@ from identification.outcome import Outcome
 from identification.signals import FrequencyResponse
 
 LINES_FOR_DELAY = 400
+OTHERS = 4
 
 Weighting = Literal["variance", "relative", "absolute"]
 
@@ -81,6 +83,8 @@ class RationalFit:
         if self.weighting == "variance" and free:
             tests.insert(0, lack_of_fit(data, errors, structure.size))
         outcome = _with_advice(solution.outcome, scaled, solution.x, self.stable, free)
+        if structure.delay:
+            outcome = self._with_delay_advice(outcome, scaled, solution, data, weights)
         return LocalEstimate(model, outcome, tuple(tests), _fit_percent(data, errors / weights))
 
     def _check(self, structure: RationalForm, data: FrequencyResponse) -> None:
@@ -134,7 +138,42 @@ class RationalFit:
             starts = np.stack([solution.x for solution in sorted(rough, key=lambda s: s.cost)[:3]])
         else:
             starts = self._starts(scaled, data, weights, 3)
-        return min(self._searches(scaled, data, weights, starts, self.max_iterations), key=lambda s: s.cost)
+        best = min(self._searches(scaled, data, weights, starts, self.max_iterations), key=lambda s: s.cost)
+        if scaled.delay:
+            best.x[-1] = shortest(best.x[-1], data.frequencies)
+        return best
+
+    def _with_delay_advice(
+        self,
+        outcome: Outcome,
+        scaled: RationalStructure,
+        solution: LeastSquaresSolution,
+        data: FrequencyResponse,
+        weights: FloatArray,
+    ) -> Outcome:
+        """The outcome with what else fits alike, or next best, and what a negative delay means."""
+        said = [outcome.advice] if outcome.advice else []
+        if solution.x[-1] < 0:
+            said.append("the delay is negative: the output leads the input; check which signal is which, and the order")
+        other = aliases(data.frequencies)
+        said.append(other or self._next_best(scaled, solution, data, weights))
+        return replace(outcome, advice="; ".join(text for text in said if text))
+
+    def _next_best(
+        self, scaled: RationalStructure, solution: LeastSquaresSolution, data: FrequencyResponse, weights: FloatArray
+    ) -> str:
+        """The best fit with a delay that is another by more than a turn at the highest frequency."""
+        turns = data.response[1:] * data.response[:-1].conj()
+        starts = np.tile(solution.x, (OTHERS, 1))
+        starts[:, -1] = np.resize(coherent_delays(data.frequencies, turns, OTHERS), OTHERS)
+        apart = abs(starts[:, -1] - solution.x[-1]) > 2 * np.pi / data.frequencies.max()
+        found = self._searches(scaled, data, weights, starts[apart], 40)
+        others = [one for one in found if abs(one.x[-1] - solution.x[-1]) > np.pi / data.frequencies.max()]
+        if not others:
+            return ""
+        best = min(others, key=lambda one: one.cost)
+        more = best.cost - solution.cost
+        return f"the next best delay is {best.x[-1]:.6g} s, with a sum of squares that is larger by {more:.4g}"
 
     def _starts(
         self, scaled: RationalStructure, data: FrequencyResponse, weights: FloatArray, count: int

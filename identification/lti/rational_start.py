@@ -6,6 +6,7 @@ import numpy as np
 
 from identification.arrays import ComplexArray, FloatArray
 from identification.errors import RangeError
+from identification.lti.delay_search import coherent_delays
 from identification.lti.likelihood import require_same_sampling
 from identification.lti.rational_basis import (
     LinearProblem,
@@ -145,8 +146,8 @@ def first_denominators(problem: LinearProblem) -> FloatArray:
 def delay_grid(problem: LinearProblem) -> FloatArray:
     """Delays τ ≥ 0 in s to try, (K,), an eighth of a turn apart over the band.
 
-    They lie around the delay that the phase shows, unwrapped and by the coherent sum Σ Ĝ_{k+1} Ĝ_k* e^{jτΔω_k}, as far
-    as n_a + n_b poles and zeros can turn the phase, and one turn further.
+    They lie around the delay that the phase shows, unwrapped, and around the best three of `coherent_delays`, as far as
+    n_a + n_b poles and zeros can turn the phase, and one turn further.
     """
     steps = np.diff(problem.omega)
     if len(steps) == 0:
@@ -156,11 +157,10 @@ def delay_grid(problem: LinearProblem) -> FloatArray:
     turns = turns / np.maximum(abs(turns), np.finfo(float).tiny)
     unwrapped = -np.sum(np.angle(turns)) / span
     spacing = delay_spacing(problem)
-    trial = np.arange(0.0, np.pi / np.median(steps), 2 * spacing)[:4000]
-    coherent = trial[np.argmax(abs(np.exp(1j * np.outer(trial, steps)) @ (turns * steps)))]
+    coherent = coherent_delays(problem.omega, turns)
     reach = int(np.ceil(((problem.structure.n_a + problem.structure.n_b) * np.pi / 2 + 2 * np.pi) / span / spacing))
     window = spacing * np.arange(-reach, reach + 1)
-    grid = np.concatenate([[0.0], unwrapped + window, coherent + window])
+    grid = np.concatenate([[0.0], unwrapped + window, (coherent[:, None] + window).ravel()])
     return np.unique(grid[grid >= 0])
 
 

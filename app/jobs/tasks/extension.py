@@ -24,6 +24,7 @@ from identification.diagnosis.staircase import refined, relative_error
 from identification.effects.second_variable import SecondVariable, with_logged
 from identification.errors import MisuseError
 from identification.extension.fit import Fit, fit
+from identification.models.model import Model as LpvModel
 from identification.places.place import Effect
 
 KIND = "extension"
@@ -41,7 +42,7 @@ def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
         context.progress(0.2, "the model without the effect")
         base = fit(model, rows_of(model, batches))
         context.progress(0.4, "the model with the effect")
-        grown = _grown(base, _effect(request, payload["quantity"], batches), request)
+        grown = _grown(model, base, _effect(request, payload["quantity"], batches), request)
         require_finite(grown.model)
         report = ExtensionReport(
             diagnosis_id=request.diagnosis_id,
@@ -60,13 +61,13 @@ def _effect(request: ExtensionRequest, quantity: str | None, batches: Sequence[B
     return next((one for one in of_quantities if isinstance(one, SecondVariable) and one.quantity == quantity), effect)
 
 
-def _grown(base: Fit, effect: Effect, request: ExtensionRequest) -> Fit:
+def _grown(model: LpvModel, base: Fit, effect: Effect, request: ExtensionRequest) -> Fit:
     """The effect from its best score, fitted with everything else; raises MisuseError when these data have no room."""
     judged = candidates(base, [effect], request.amplitude_degree)
     if not judged[0].signatures:
         raise MisuseError(f"{effect.title}: {judged[0].why_not}", "effects")
     scores = score_tests(base, judged, np.random.default_rng(request.seed))
-    refitted = refit_short_list(base, scores).evidence
+    refitted = refit_short_list(base, scores, origin=model).evidence
     if not refitted:
         raise MisuseError(
             f"{effect.title}: fitted to these experiments it explains nothing or leaves its physical range; it is not"

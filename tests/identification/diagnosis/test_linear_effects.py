@@ -151,6 +151,21 @@ def test_a_second_mass_is_named():
     assert best.effect.frequency == pytest.approx(np.sqrt(8 / 0.15), rel=0.01)
 
 
+@pytest.mark.parametrize("tau", [0.1, 3.0])
+def test_a_delay_of_many_turns_is_named_with_its_length(tau):
+    """A logarithmic sweep; the refit without the delay bends all parameters, the scan begins from the stated ones."""
+    first = model_of(RationalStructure(1, 0), (1, 1), [1.0, -0.4, 1.0, -0.4])
+    omega = 2 * np.pi * np.geomspace(0.1, 10, 40)
+
+    def plant(p, s):
+        return (1 - 0.4 * p) / (s + 1 - 0.4 * p) * np.exp(-s * tau)
+
+    found = diagnose(first, responses(plant, (0.0, 0.5, 1.0), 6, noise=1e-2, omega=omega))
+    assert named(found)[0] == "delay"
+    assert found.verdict == "explained"
+    assert found.best.fit.model.effects[-1].coefficients[0, 0] == pytest.approx(tau, abs=2e-4)
+
+
 def held_records(said):
     """x″ + 1.5 x′ + (40 − 20 p) x = u, u held, filtered by its exact sampled form written out here."""
     generator, found, step, period = np.random.default_rng(7), [], 0.1, 128
