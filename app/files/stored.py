@@ -17,6 +17,7 @@ MEDIA_TYPES = {
     "mat": "application/octet-stream",
     "wav": "audio/wav",
     "html": "text/html",
+    "c": "text/x-c",
 }
 
 

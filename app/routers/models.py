@@ -5,14 +5,24 @@ from typing import Annotated
 from fastapi import APIRouter, Query, Response
 
 from app.dependencies import ContainerDependency, Cursor, IdempotencyKey, Limit, ResourcesDependency
+from app.routers.downloads import file_answer, file_response
 from app.schemas.extensions import ExtensionRequest
 from app.schemas.jobs import Job
 from app.schemas.models import Model, ModelFrequencyResponse, ModelList, ModelRequest, StatedModelRequest
 from app.schemas.simulations import SimulationRequest
 from app.schemas.state_space import StateSpaceModelRequest
 from app.schemas.varying import VaryingModelRequest
-from app.services import extensions, model_responses, models, simulations, state_space_models, varying_models
+from app.services import (
+    extensions,
+    model_files,
+    model_responses,
+    models,
+    simulations,
+    state_space_models,
+    varying_models,
+)
 from app.services.jobs import accepted
+from identification.exports import exports
 
 router = APIRouter(prefix="/models", tags=["models"])
 
@@ -66,6 +76,22 @@ def list_models(
 def get_model(modelId: str, resources: ResourcesDependency) -> Model:
     """One model with its accuracy and where it came from."""
     return models.get(resources, modelId)
+
+
+@router.get("/{modelId}/file", response_class=Response, responses=file_answer("csv", "c"))
+def get_model_file(
+    modelId: str,
+    resources: ResourcesDependency,
+    format: Annotated[
+        str, Query(description="for which use", max_length=40, json_schema_extra={"enum": sorted(exports())})
+    ] = "coefficients",
+) -> Response:
+    """A model for other programs: coefficients over the range with deviations as CSV, or C99 that allocates nothing.
+
+    Of rational models without effects; C99 in discrete time without an estimated delay.
+    """
+    content, ending = model_files.as_file(resources, modelId, format)
+    return file_response(content, f"model-{modelId}", ending)
 
 
 @router.post("/{modelId}/extensions", status_code=202)

@@ -10,7 +10,7 @@ from identification.arrays import ComplexArray, FloatArray, require_positive
 from identification.errors import MisuseError, RangeError, ShapeError
 from identification.models.hold import held_ratio, held_ratio_gradient
 from identification.models.recursion import propagate
-from identification.models.structure import NOT_ALONG, Along, Group, Structure
+from identification.models.structure import NOT_ALONG, Along, DifferenceEquation, Group, Structure
 from identification.signals import HeldInput
 
 
@@ -166,6 +166,12 @@ class RationalStructure(Structure):
         gradient = np.zeros((*zeros.shape, self.n_plant), dtype=np.complex128)
         gradient[..., : self.n_a] = -scale * powers / differences.prod(axis=-1)[..., None]
         return np.asarray(scale * zeros), gradient
+
+    def difference_equation(self) -> DifferenceEquation:
+        """Its own orders; raises MisuseError in continuous time, or with an estimated delay."""
+        if self.sample_time is None or self.delay:
+            return super().difference_equation()
+        return DifferenceEquation(self.n_a, self.n_b, self.n_k, self.sample_time)
 
     def along(self, zeta: FloatArray, input: FloatArray) -> Along:
         """The difference equation with coefficients that follow p(t) at once.

@@ -32,6 +32,16 @@ class Along:
     change: Callable[[FloatArray], FloatArray]
 
 
+@dataclass(frozen=True)
+class DifferenceEquation:
+    """y(t) = −Σ_{i ≤ n_a} ζ_i y(t−i) + Σ_{i ≤ n_b} ζ_{n_a+i+1} u(t−n_k−i): the orders, and T in seconds."""
+
+    n_a: int
+    n_b: int
+    n_k: int
+    sample_time: float
+
+
 class Structure(ABC):
     """y = G u + H e at one operating point, with coefficients ζ (n,): those of G first, then those of H.
 
@@ -126,6 +136,10 @@ class Structure(ABC):
 
         Raises MisuseError where no simulation along p(t) is defined: in continuous time, or with an estimated delay.
         """
+
+    def difference_equation(self) -> DifferenceEquation:
+        """The orders of the difference equation that ζ_G are the coefficients of; raises MisuseError without one."""
+        raise MisuseError("only rational models in discrete time without an estimated delay are difference equations")
 
     def plant_response(self, zeta: FloatArray, omega: FloatArray, held: HeldInput | None = None) -> ComplexArray:
         """G from the first input to the first output, as (…, F).
