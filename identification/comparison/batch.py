@@ -8,7 +8,9 @@ import numpy as np
 
 from identification.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from identification.channels import UNSTATED, Channels
+from identification.comparison.adaptation import Adaptation
 from identification.comparison.disturbance import Disturbance
+from identification.comparison.nuisance import Nuisance
 from identification.signals import HeldInput
 
 EXCITED, ODD, EVEN = 0, 1, 2
@@ -37,6 +39,12 @@ class Batch:
     the responses stand for records that do not repeat; `notes`: what else is to be said of measurements, by their
     place in the list. `held`: how models in continuous time see the input, None where it is band limited;
     `hold_stated`: that was said. `channels`: what input and output are.
+
+    A record that does not repeat itself stands here with all its lines, L being its length, as Y = G U + Φ x + V:
+    `transients` Φ (M, c, K), whose real coefficients x are unknown, are taken out of all rows. `general` (M, d, 2K):
+    orthonormal whitened rows of what any model could have missed; lack of fit is then judged there and the noise is
+    what they leave. `adaptation`: how the batch follows from the model; None where it does not. `measured_law` (M, K):
+    the output from which forces that effects feed back are computed in place of the simulated one.
     """
 
     points: FloatArray
@@ -64,6 +72,10 @@ class Batch:
     held: HeldInput | None = None
     hold_stated: bool = False
     channels: Channels = UNSTATED
+    transients: ComplexArray | None = None
+    general: FloatArray | None = None
+    adaptation: Adaptation | None = None
+    measured_law: ComplexArray | None = None
 
     @cached_property
     def real(self) -> BoolArray:
@@ -92,9 +104,28 @@ class Batch:
 
     @property
     def row_count(self) -> int:
-        """How many real numbers are compared."""
+        """How many real numbers are compared, less those that nuisances and transients take up."""
         taken = 0 if (found := self._of_nuisance) is None else int(np.sum(found[1] < 0))
-        return int(self.compared.sum()) - taken
+        transients = 0 if self._span is None else round(float(self._span.counts.sum()))
+        return int(self.compared.sum()) - taken - transients
+
+    @property
+    def repeats(self) -> bool:
+        """Whether the signals are periods: False for records whose end does not lead back to their start."""
+        return self.transients is None
+
+    @cached_property
+    def _span(self) -> Nuisance | None:
+        if self.transients is None:
+            return None
+        whitened = self._weighted(np.moveaxis(self.transients, 1, 0))
+        return Nuisance.of(self.transients, np.moveaxis(whitened, 0, 1))
+
+    def transient(self, moved: ComplexArray) -> ComplexArray:
+        """Φ x (M, K) that brings the answer `moved` (M, K) of a model nearest to the measured output; zero if none."""
+        if self._span is None:
+            return np.zeros_like(moved)
+        return self._span.fitted(self._weighted(self.outputs - moved))
 
     def whiten(self, spectra: ComplexArray) -> FloatArray:
         """Spectra (…, M, K) as uncorrelated rows of unit variance (…, M·2·K): real, then imaginary parts by record."""
@@ -104,6 +135,8 @@ class Batch:
                 directions, factors = found
                 part = np.einsum("...mr,mir->...mi", rows, directions) * factors
                 rows += np.einsum("...mi,mir->...mr", part, directions)
+        if self._span is not None:
+            rows = self._span.taken_out(rows)
         return rows.reshape(*spectra.shape[:-2], -1)
 
     @cached_property
@@ -175,6 +208,16 @@ class Batch:
         scale = np.where(self.real, 1.0, np.sqrt(0.5))
         return np.asarray(scale * (parts[:, 0] + 1j * parts[:, 1]))
 
+    @cached_property
+    def followed(self) -> ComplexArray | None:
+        """The output that laws follow (M, K), each line by its share of signal: Y_k max(1 − σ_k²/|Y_k|², 0)."""
+        if self.measured_law is None:
+            return None
+        power = abs(self.measured_law) ** 2
+        noise = np.where(np.isfinite(self.variances), self.variances, 0.0)
+        share = np.maximum(1 - noise / np.where(power > 0, power, 1.0), 0.0)
+        return np.asarray(np.where(power > 0, share, 0.0) * self.measured_law)
+
     def spectrum(self, signals: FloatArray) -> ComplexArray:
         """Lines (…, K) of signals (…, L·n) over one period."""
         lines = np.fft.rfft(signals)[..., : len(self.omega)]
@@ -184,12 +227,41 @@ class Batch:
         """One period (…, L·`finer`) of signals with lines (…, K), the time grid finer by that factor."""
         assert self.signals is not None
         length = self.signals.shape[-1] * finer
+        if finer > 1 and not self.repeats:
+            return with_free_ends(self.signal(spectra), finer)
         if finer > 1:
             spectra = spectra * np.where(self.real & (self.omega > 0), 0.5, 1.0)
         return np.asarray(np.fft.irfft(spectra * length, n=length))
+
+    def rate(self, spectra: ComplexArray, finer: int = 1) -> FloatArray:
+        """The time derivative (…, L·`finer`) per second of such signals; the Nyquist line has none."""
+        assert self.signals is not None
+        if not self.repeats:
+            assert self.sample_time is not None
+            return with_free_ends(self.signal(spectra), finer, self.sample_time)
+        omega = np.where(self.real, 0.0, self.omega)
+        return self.signal(np.asarray(1j * omega * spectra), finer)
 
     @property
     def band(self) -> tuple[float, float]:
         """Lowest and highest excited frequency above zero, rad/s."""
         excited = self.omega[np.any((self.classes == EXCITED) & np.isfinite(self.variances), axis=0) & (self.omega > 0)]
         return float(excited.min()), float(excited.max())
+
+
+def with_free_ends(x: FloatArray, finer: int, sample_time: float | None = None) -> FloatArray:
+    """Signals (…, L) on a grid `finer` times as fine, or their rate of change with a `sample_time`, (…, L·finer).
+
+    A straight line is taken out first, so that the ends meet and the lines of what is left fall off fast.
+    """
+    length = x.shape[-1]
+    slope = (x[..., -1:] - x[..., :1]) / (length - 1)
+    lines = np.fft.rfft(x - slope * np.arange(length))
+    if length % 2 == 0:
+        lines[..., -1] *= 0.5 if finer > 1 else 1.0
+    line = slope * (np.arange(length * finer) / finer)
+    if sample_time is not None:
+        omega = 2 * np.pi * np.fft.rfftfreq(length, sample_time)
+        omega[-1] *= length % 2
+        lines, line = 1j * omega * lines, slope / sample_time
+    return np.asarray(np.fft.irfft(lines * finer, n=length * finer) + line)

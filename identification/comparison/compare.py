@@ -17,6 +17,7 @@ from identification.comparison.responses import ComparedResponses, compared_resp
 from identification.errors import MisuseError
 from identification.extension.fit import Fit, fit
 from identification.extension.rows import Rows, effect_tangents, plant_tangents
+from identification.extension.settle import settled
 from identification.lti.whiteness import orthonormal
 from identification.models.model import Model, require_matching
 from identification.outcome import TestResult
@@ -81,7 +82,7 @@ class _Judge:
     def test(self, name: str, chosen: BoolArray) -> TestResult:
         """Lack of fit of the chosen rows (R,)."""
         chosen = chosen & self.compared
-        residual, count = self.residual[chosen], float(chosen.sum())
+        residual, count = self.rows.judged(self.residual)[chosen], float(self.rows.shares[chosen].sum())
         energy, freedom = float(residual @ residual), count - float(self.leverage[chosen].sum())
         if self.covariance is not None:
             tangents = _root(self.covariance).T @ self.tangents[:, chosen]
@@ -101,7 +102,8 @@ def compare(model: Model, batches: Sequence[Batch], fitted: bool = True) -> Comp
     the covariance I + J P Jᵀ. Raises MisuseError for a model without (finite) covariance then.
     """
     require_matching(model, batches)
-    rows = Rows(tuple(batches))
+    rows = Rows(settled(model, batches, refit=False))
+    batches = rows.batches
     flows, judge = _fitted(model, rows) if fitted else _held_out(model, rows)
     refit = fit(model, rows) if fitted else None
     brought = None if refit is None else _fit_percent(batches, refit.flows)

@@ -2,13 +2,16 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from identification.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from identification.comparison.batch import EVEN, EXCITED, ODD, Batch
 from identification.comparison.between import flattened
+from identification.comparison.both_signals import both_signals, excited_in_noise
 from identification.comparison.disturbance import find_disturbances, without
+from identification.comparison.free_record import of_record
 from identification.comparison.noise import NoiseOfMean, noise_of_mean
 from identification.comparison.wandering import (
     left_in_mean,
@@ -21,7 +24,6 @@ from identification.comparison.wandering import (
 from identification.errors import MisuseError
 from identification.lti.response_tests import real_lines
 from identification.signals import FrequencyResponse, Measurement, TimeRecord
-from identification.spectral.local_polynomial import LocalPolynomial
 from identification.spectral.periodic_average import PeriodicAverage, excited_lines
 from identification.spectral.resolution import check_changing, converter_step, repeated_error
 
@@ -41,9 +43,9 @@ def gather(
 
     Periodic records give their mean spectrum at all lines of the period, excited or not, with the variance from how
     the periods differ, pooled over fifteen lines, slow trends and sine waves between the lines taken off; other
-    records the frequency response that the local polynomial method finds. `mean_value` keeps the line at ω = 0 of
-    periodic records.
-    `logged`: for each experiment the quantities written down beside the scheduling variables; those of all are kept.
+    records all their lines with an unknown transient, weighted once they are settled under a model
+    (`identification.extension.settle`). `mean_value` keeps the line at ω = 0 of periodic records. `logged`: for each
+    experiment the quantities written down beside the scheduling variables; those of all are kept.
     """
     if not experiments:
         raise MisuseError("there is nothing to compare with; give at least one experiment", "experiments")
@@ -79,6 +81,8 @@ def _grid(part: Batch) -> object:
         part.held,
         part.hold_stated,
         part.smoothed,
+        part.repeats,
+        type(part.adaptation),
         part.channels.input.quantity,
         part.channels.output.quantity,
     )
@@ -87,22 +91,23 @@ def _grid(part: Batch) -> object:
 
 def _joined(group: list[Batch]) -> Batch:
     first = group[0]
-    stacked = {
+    stacked: dict[str, Any] = {
         name: np.concatenate([getattr(part, name) for part in group])
         for name in ("points", "inputs", "outputs", "variances", "classes", "members")
     }
-    signals = None if first.signals is None else np.concatenate([p.signals for p in group if p.signals is not None])
-    ends = None if first.ends is None else np.concatenate([part.ends for part in group if part.ends is not None])
+    stated: dict[str, Any] = {
+        name: None if getattr(first, name) is None else np.concatenate([getattr(part, name) for part in group])
+        for name in ("signals", "ends", "transients")
+    }
     nuisances = [part.nuisance for part in group if part.nuisance is not None]
     between = tuple(b for part in group for b in part.between)
+    others = [part.adaptation for part in group[1:] if part.adaptation is not None]
     return Batch(
         omega=first.omega,
-        signals=signals,
         sample_time=first.sample_time,
         freedom=first.freedom,
         raw_freedom=first.raw_freedom,
         half_width=first.half_width,
-        ends=ends,
         nuisance=_padded(nuisances) if nuisances else None,
         slopes=None if first.slopes is None else np.concatenate([p.slopes for p in group if p.slopes is not None]),
         scaled=first.scaled,
@@ -114,6 +119,8 @@ def _joined(group: list[Batch]) -> Batch:
         notes=tuple(one for part in group for one in part.notes),
         logged={name: np.concatenate([part.logged[name] for part in group]) for name in first.logged},
         channels=first.channels,
+        adaptation=None if first.adaptation is None else first.adaptation.joined(others),
+        **stated,
         **stacked,
     )
 
@@ -128,8 +135,7 @@ def _one(m: int, data: Measurement, mean_value: bool) -> Batch:
     if isinstance(data, FrequencyResponse):
         return _of_response(m, data)
     if data.period is None or data.period_count < 2:
-        response = _of_response(m, LocalPolynomial().estimate(data))
-        return replace(response, smoothed=True, held=data.held, hold_stated=data.hold is not None)
+        return of_record(m, data)
     return _of_periodic(m, data, mean_value)
 
 
@@ -177,16 +183,18 @@ def _of_periodic(m: int, record: TimeRecord, mean_value: bool) -> Batch:
     walks = trend is None and wanders(clean, count)
     estimator = PeriodicAverage(drop_periods=record.period_count - count)
     u, y = (spectra / period for spectra in estimator.steady_spectra(clean))
-    excited = excited_lines(u, estimator.threshold)
     omega = np.asarray(2 * np.pi * np.fft.rfftfreq(period, record.sample_time), dtype=np.float64)
     real = real_lines(omega, record.sample_time)
+    excited = excited_lines(u, estimator.threshold) & excited_in_noise(u, real)
     noise = _noise(u, y, excited, real, walks)
     step = converter_step(record.output)
     rounding = repeated_error(step, float(np.sqrt(np.sum(np.var(y, axis=0, ddof=1) * np.where(real, 1, 2)))))
-    variances = noise.variance + rounding / period * np.where(real, 2.0, 1.0)
+    rounded = np.asarray(rounding / period * np.where(real, 2.0, 1.0))
+    both = both_signals(u, y, excited, rounded, record.feedback, walks)
+    variances = noise.variance + rounded
     if not mean_value or trend is not None:
         variances[0] = np.inf
-    mean_input = np.where(excited, u.mean(axis=0), 0.0)
+    mean_input = u.mean(axis=0) if both else np.where(excited, u.mean(axis=0), 0.0)
     return Batch(
         points=np.array([record.operating_point], dtype=np.float64),
         omega=omega,
@@ -212,6 +220,7 @@ def _of_periodic(m: int, record: TimeRecord, mean_value: bool) -> Batch:
             *_notes(m, noise, step if rounding > ROUNDS * float(np.median(noise.variance)) * period else 0.0),
             *([(m, SLOW)] if trend is not None else [(m, WALKS)] if walks else []),
         ),
+        adaptation=both,
     )
 
 

@@ -19,6 +19,7 @@ from identification.effects.second_variable import with_logged
 from identification.errors import MisuseError
 from identification.extension.fit import Fit, fit
 from identification.extension.rows import Rows
+from identification.extension.settle import settled
 from identification.models.model import Model, require_matching
 from identification.outcome import TestResult
 from identification.places.place import Effect
@@ -96,11 +97,11 @@ class Diagnosis:
 def rows_of(model: Model, batches: Sequence[Batch]) -> Rows:
     """The batches as rows for a model; noise of unknown size is scaled by what the model leaves."""
     require_matching(model, batches)
-    rows = Rows(tuple(batches))
+    rows = Rows(settled(model, batches))
     if rows.scaled:
         return rows
     parts = rows.parts(fit(model, rows).residual)
-    pairs = zip(batches, parts, strict=True)
+    pairs = zip(rows.batches, parts, strict=True)
     return Rows(rows.batches, tuple(1.0 if b.scaled else float(np.sqrt(p @ p / b.row_count)) for b, p in pairs))
 
 
@@ -213,8 +214,9 @@ def misfit(name: str, found: Fit, seed: int = 0) -> TestResult:
     """Lack of fit of a fitted model; where the size of the noise is not known, whether what it leaves is smooth."""
     if not found.rows.scaled:
         return SmoothRemainder(found).test(name, found, seed)
-    energy = float(found.residual @ found.residual)
-    return lack_of_fit(name, energy, found.rows.count - len(found.tangents), found.rows.noise_freedom)
+    judged_part = found.rows.judged(found.residual)
+    freedom = float(found.rows.shares.sum()) - len(found.tangents)
+    return lack_of_fit(name, float(judged_part @ judged_part), freedom, found.rows.noise_freedom)
 
 
 def confusability(scores: Sequence[Score]) -> FloatArray:

@@ -15,6 +15,7 @@ from identification.extension.fit import Fit, fit
 from identification.extension.rows import Rows
 from identification.models.model import Model
 from identification.places.placed import PlacedEffect
+from identification.places.steady import NoSteadyStateError
 
 SHORT_LIST = 8
 STARTS, NEAR, APART = 3, 0.5, 2
@@ -175,17 +176,20 @@ def explained_share(base: Fit, found: Fit, noise: float = 1.0) -> float:
 
 def noise_explains(found: Fit, noise: float = 1.0) -> bool:
     """Whether the lack of fit of a fit has p of a thousandth or more with noise of this size."""
-    energy = float(found.residual @ found.residual) / noise
-    freedom = found.rows.count - len(found.tangents)
+    part = found.rows.judged(found.residual)
+    energy, freedom = float(part @ part) / noise, float(found.rows.shares.sum()) - len(found.tangents)
     return lack_of_fit("", energy, freedom, found.rows.noise_freedom).p_value >= STRICT
 
 
 def _refitted(base: Fit, score: Score, hopeless: float, origin: Model | None) -> Fit | None:
-    found = [_attempt(base, score, start, hopeless) for start in _starts(base, score)]
+    attempts = [_attempt(base, score, start, hopeless) for start in _starts(base, score)]
+    found = [one for one in attempts if one is not None]
     if origin is not None:
         one = score.signature.placed
         starts = scanned_starts(base, origin, one.effect, one.degree)
         found += [fit(start, base.rows, iterations=13, tolerance=0.05) for start in starts]
+    if not found:
+        return None
     best = min(found, key=lambda one: one.cost)
     if not best.outcome.ok and float(best.residual @ best.residual) < hopeless:
         best = fit(best.model, base.rows, iterations=LONGER, tolerance=0.05, start=best.flows)
@@ -248,11 +252,17 @@ def _starts(base: Fit, score: Score) -> list[int]:
     return found
 
 
-def _attempt(base: Fit, score: Score, variant: int, hopeless: float) -> Fit:
-    """From amplitude zero, so that the first step, halved where it is too long, is the one that the score points to."""
+def _attempt(base: Fit, score: Score, variant: int, hopeless: float) -> Fit | None:
+    """From amplitude zero, so that the first step, halved where it is too long, is the one that the score points to.
+
+    None for a motion that these signals do not let be computed.
+    """
     start = score.candidate.signatures[variant].placed
     absent = base.model.plus(replace(start, coefficients=np.zeros_like(start.coefficients)))
-    return fit(absent, base.rows, iterations=13, tolerance=0.05, hopeless=hopeless, start=base.flows)
+    try:
+        return fit(absent, base.rows, iterations=13, tolerance=0.05, hopeless=hopeless, start=base.flows)
+    except NoSteadyStateError:
+        return None
 
 
 def _weighted(none: float, ordered: Sequence[Evidence]) -> list[Evidence]:

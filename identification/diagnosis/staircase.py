@@ -1,7 +1,7 @@
 """Effects added one by one until the noise explains what is left; every step is kept."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from identification.diagnosis.exchange import looked_over
 from identification.diagnosis.remainder import MATERIAL
 from identification.diagnosis.verdict import Verdict
 from identification.extension.fit import Fit, fit
+from identification.extension.settle import settled
 from identification.models.model import Model
 from identification.places.place import Effect
 from identification.places.steady import NoSteadyStateError
@@ -42,7 +43,7 @@ class Step:
 def relative_error(model: Model, batches: Sequence[Batch]) -> float:
     """The error of a model, everywhere: ‖Y − Ŷ‖/‖Y‖ over the excited lines that are compared, of all measurements."""
     error = size = 0.0
-    for batch in batches:
+    for batch in settled(model, batches, refit=False):
         used = np.where((batch.classes == EXCITED) & np.isfinite(batch.variances), 1.0, 0.0)
         error += float(np.sum(used * abs(batch.outputs - model.output(batch)) ** 2))
         size += float(np.sum(used * abs(batch.outputs) ** 2))
@@ -132,8 +133,12 @@ def _changed(base: Fit, grown: Fit) -> float:
 
 
 def refined(found: Fit) -> Fit:
-    """A fit of the short list carried on to its minimum, with the covariance of all its parameters."""
-    return fit(found.model, found.rows, iterations=LONGER, exact=found.rows.scaled, start=found.flows)
+    """A fit of the short list carried on to its minimum, with the covariance of all its parameters.
+
+    Batches that follow from the model are settled under the one with the effect first.
+    """
+    rows = replace(found.rows, batches=settled(found.model, found.rows.batches))
+    return fit(found.model, rows, iterations=LONGER, exact=rows.scaled, start=found.flows)
 
 
 def conclusion(steps: Sequence[Step]) -> Verdict:

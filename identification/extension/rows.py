@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -42,6 +43,23 @@ class Rows:
         ends = np.cumsum([len(batch.compared) for batch in self.batches])[:-1]
         return np.split(rows, ends, axis=-1)
 
+    def judged(self, residual: FloatArray) -> FloatArray:
+        """The part of a residual (R,) that lack of fit is judged by.
+
+        All of it where the noise is known without a model, else what lies in the general directions of a record.
+        """
+        return np.concatenate([_judged(b, part) for b, part in zip(self.batches, self.parts(residual), strict=True)])
+
+    @cached_property
+    def shares(self) -> FloatArray:
+        """The degrees of freedom of each row of `judged`, (R,): one, or its share in the general directions."""
+        return np.concatenate(
+            [
+                b.compared.astype(np.float64) if b.general is None else np.sum(b.general**2, axis=1).ravel()
+                for b in self.batches
+            ]
+        )
+
     @property
     def count(self) -> int:
         """How many real numbers are compared."""
@@ -57,6 +75,14 @@ class Rows:
     def scaled(self) -> bool:
         """Whether the size of the noise is known for all batches."""
         return all(batch.scaled for batch in self.batches)
+
+
+def _judged(batch: Batch, rows: FloatArray) -> FloatArray:
+    if batch.general is None:
+        return rows
+    parts = rows.reshape(len(batch.points), -1)
+    onto = np.einsum("mr,mdr->md", parts, batch.general)
+    return np.asarray(np.einsum("md,mdr->mr", onto, batch.general)).ravel()
 
 
 def plant_tangents(model: Model, rows: Rows, flows: Sequence[Flow]) -> FloatArray:

@@ -176,7 +176,9 @@ class Model:
         return Setting(self.structure, zeta, (p - low) / half - 1, slope)
 
     def respond(self, batch: Batch, start: Flow | None = None) -> Flow:
-        """The steady signals of a batch; see `identification.places.simulate`."""
+        """The steady signals of a batch; see `identification.places.simulate`. Laws follow what they are told to."""
+        if batch.followed is not None:
+            return self.follow(batch, batch.followed)
         setting = self.setting(batch.points)
         return simulate(setting, self._acting(setting, batch), batch, start)
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from scipy.linalg import expm
 
 from identification.arrays import ComplexArray, FloatArray, require_positive
 from identification.errors import MisuseError, RangeError, ShapeError
@@ -61,6 +62,11 @@ class RationalStructure(Structure):
     def order(self) -> int:
         """n_a."""
         return self.n_a
+
+    @property
+    def transients(self) -> int:
+        """max(n_a, n_b + n_k) in discrete time, where the input before the record is not known either."""
+        return max(self.n_a, self.n_b + self.n_k) if self.is_discrete else self.n_a
 
     def split(self, zeta: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]:
         """(a, b, τ, c, d) of ζ (…, n), without the leading ones; τ has a last axis of size 0 or 1."""
@@ -151,6 +157,21 @@ class RationalStructure(Structure):
         over_d = 1 / _monic(d, d_powers)[..., None, :]
         response = _monic(c, c_powers)[..., None, :] * over_d
         return np.concatenate([over_d * c_powers[1:], -response * over_d * d_powers[1:]], axis=-2)
+
+    def sampled(self, zeta: FloatArray, step: float) -> tuple[FloatArray, FloatArray] | None:
+        """In observable form; None for a direct path, a delay of more than one sample or an estimated one."""
+        n, late = self.n_a, self.n_k - 1 if self.is_discrete else self.n_a - 1 - self.n_b
+        if late < 0 or late + self.n_b >= n or self.delay:
+            return None
+        a, b, _, _, _ = self.split(zeta)
+        matrix = np.zeros((n + 1, n + 1))
+        matrix[:n, :n] = np.eye(n, k=1)
+        matrix[:n, 0] = -a
+        matrix[late : late + self.n_b + 1, n] = b
+        if self.is_discrete:
+            matrix[n, n] = 1.0
+            return matrix, np.eye(1, n)[0]
+        return expm(matrix * (self.frequency_scale * step)), np.eye(1, n)[0]
 
     def poles(self, zeta: FloatArray) -> ComplexArray:
         """Poles of G for ζ (…, n), as (…, n_a): in the z-plane, or in rad/s in continuous time."""

@@ -80,6 +80,11 @@ class Structure(ABC):
         return ParameterDependence(variables, tuple(one for one in bases if one is not None), entries)
 
     @property
+    def transients(self) -> int:
+        """How many coefficients what was before a record and what follows it take at its lines, over A(q)."""
+        return self.order
+
+    @property
     def outputs(self) -> int:
         """n_y."""
         return 1
@@ -154,6 +159,10 @@ class Structure(ABC):
         """∂G/∂ζ_G of `plant_response`, as (…, n_plant, F)."""
         self._require_unheld(held)
         return np.swapaxes(self.gradient(zeta, omega)[..., 0, 0, :], -1, -2)
+
+    def sampled(self, zeta: FloatArray, step: float) -> tuple[FloatArray, FloatArray] | None:
+        """[A B; 0 1] (n_x + 1, n_x + 1) over one step of a held input, and C (n_x,), for ζ (n,); None: not known."""
+        return None
 
     def _require_unheld(self, held: HeldInput | None) -> None:
         if held is not None and not self.is_discrete:

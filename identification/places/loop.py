@@ -8,10 +8,11 @@ import numpy as np
 
 from identification.arrays import ComplexArray, FloatArray
 from identification.comparison.batch import Batch
+from identification.places.intersample import Between
 from identification.places.motion import displacement, flow_rate, static_stiffness
 from identification.places.nonlinear import Feedback
 
-BALANCING = 4
+BALANCING, PASSES = 4, 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,7 +22,8 @@ class Loop:
     H = `entry` is G as the input is seen through its hold.
 
     Unknowns are the lines X (M, K) and, for d ≥ 1, the mean q₀ of the displacement as a further column (M, K + 1), for
-    which the forces balance at ω = 0: K q₀ + F₀ = U₀ with the static stiffness K of the plant.
+    which the forces balance at ω = 0: K q₀ + F₀ = U₀ with the static stiffness K of the plant. `between`: the motion
+    between the samples for X and the drive, where the plant is followed there; forces are then held at their means.
     """
 
     response: ComplexArray
@@ -30,6 +32,7 @@ class Loop:
     forces: Sequence[tuple[Feedback, FloatArray]]
     batch: Batch
     finer: int
+    between: Between | None = None
 
     @cached_property
     def order(self) -> int:
@@ -41,9 +44,15 @@ class Loop:
         """K (M,)."""
         return static_stiffness(self.response, self.batch, self.order)
 
-    def motion(self, effect: Feedback, x: ComplexArray) -> tuple[FloatArray, FloatArray]:
-        """q and q̇ (M, L·finer) that an effect sees."""
+    def motion(
+        self, effect: Feedback, x: ComplexArray, force: ComplexArray | None = None
+    ) -> tuple[FloatArray, FloatArray]:
+        """q and q̇ (M, L·finer) that an effect sees; between the samples where the plant is followed there."""
         core, mean = self.split(x)
+        if effect.order == 0 and self.between is not None:
+            return self.between(core, self.entering - (self.force_lines(x) if force is None else force))
+        if effect.order == 0 and not self.batch.repeats:
+            return self.batch.signal(core, self.finer), self.batch.rate(core, self.finer)
         q = displacement(core, mean, self.batch, effect.order)
         return self.batch.signal(q, self.finer), self.batch.signal(
             flow_rate(core, self.batch, effect.order), self.finer
@@ -56,8 +65,11 @@ class Loop:
     def force_lines(self, x: ComplexArray) -> ComplexArray:
         """F (M, K) of all forces."""
         total = np.zeros_like(self.response)
-        for effect, e in self.forces:
-            total += e * effect.lines(self.batch, *self.motion(effect, x))
+        for _ in range(1 if self.between is None else PASSES):
+            before, total = total, np.zeros_like(self.response)
+            for effect, e in self.forces:
+                held = 1 if self.between is None or effect.order else self.finer
+                total += e * effect.lines(self.batch, *self.motion(effect, x, before), held)
         return total
 
     @cached_property
@@ -65,10 +77,15 @@ class Loop:
         """What the input alone makes of X (M, K)."""
         return np.asarray(self.entry * self.entering)
 
+    def answer(self, force: ComplexArray) -> ComplexArray:
+        """X (M, K) for a force (M, K), with the transient that brings it nearest to a record that does not repeat."""
+        moved = self.driven - self.response * force
+        return np.asarray(moved + self.batch.transient(moved))
+
     def update(self, x: ComplexArray) -> ComplexArray:
         """What the lines and the mean would have to be for the forces that they cause."""
         force = self.force_lines(x)
-        moved = self.driven - self.response * force
+        moved = self.answer(force)
         if not self.order:
             return np.asarray(moved)
         mean = x[:, -1].real

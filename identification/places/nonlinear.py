@@ -8,6 +8,7 @@ import numpy as np
 
 from identification.arrays import ComplexArray, FloatArray
 from identification.comparison.batch import Batch
+from identification.places.intersample import OFFSETS
 from identification.places.motion import motions, powers
 from identification.places.place import Effect, Flow, FurtherParameter
 
@@ -64,9 +65,11 @@ class Feedback(Effect):
         slope, none = np.asarray((up - down) / (2 * step)), np.zeros_like(by)
         return (slope, none) if self.on_displacement else (none, slope)
 
-    def lines(self, batch: Batch, x: FloatArray, velocity: FloatArray) -> ComplexArray:
-        """F (M, K) of the force for q and q̇ (M, L) over one period."""
-        return np.asarray(self.rates(batch) * batch.spectrum(self.force(x, velocity)))
+    def lines(self, batch: Batch, x: FloatArray, velocity: FloatArray, held: int = 1) -> ComplexArray:
+        """F (M, K) of the force for q and q̇ (M, L) over one period; its means over `held` values where it is held."""
+        values = self.force(x, velocity)
+        kept = values if held == 1 else values.reshape(len(values), -1, held).mean(axis=-1)
+        return np.asarray(self.rates(batch) * batch.spectrum(kept))
 
     def rates(self, batch: Batch) -> ComplexArray:
         """What turns lines of f into lines of the force, (K,)."""
@@ -95,7 +98,8 @@ class Feedback(Effect):
 
     def tangent(self, e: FloatArray, flow: Flow) -> ComplexArray:
         """∂Y/∂e (1, M, K)."""
-        change = self.lines(flow.batch, *flow.motion(self.order, self.driven, flow.finer(self)))
+        held = OFFSETS if flow.between is not None and self.order == 0 and not self.driven else 1
+        change = self.lines(flow.batch, *flow.motion(self.order, self.driven, flow.finer(self)), held)
         if self.driven:
             return np.asarray((flow.factor * change)[None])
         return flow.through(-flow.response * change)[None]

@@ -14,6 +14,7 @@ from identification.arrays import ComplexArray, FloatArray
 from identification.comparison.batch import Batch
 from identification.models.hold import hold_factor
 from identification.models.structure import Structure
+from identification.places.intersample import Between
 from identification.places.motion import displacement, flow_rate
 from identification.signals import HeldInput
 
@@ -65,7 +66,7 @@ class Flow:
     times all factors; `linear` (M, K) after all that acts linearly; `output` (M, K). `acting`: the effects with their
     amplitudes; `gradient`: of the core by ζ_G (M, n_plant, K), with True as the input is seen. `mean` (M,) of the
     displacement where the output does not show it; `closing` turns a change of X without the reaction of the forces
-    (M, K) into one with it.
+    (M, K) into one with it; `between`: the motion between the samples, where the plant is followed there.
     """
 
     batch: Batch
@@ -83,6 +84,7 @@ class Flow:
     gradient: Callable[[bool], ComplexArray]
     mean: FloatArray
     closing: Callable[[ComplexArray], ComplexArray] | None = None
+    between: Between | None = None
     cache: dict[tuple[str, int, int], FloatArray] = field(default_factory=dict)
 
     @cached_property
@@ -126,10 +128,20 @@ class Flow:
 
     def motion(self, order: int, driven: bool, finer: int) -> tuple[FloatArray, FloatArray]:
         """Displacement and flow (M, L·finer): from the output of this order, or from the input where that is driven."""
+        if order == 0 and not driven and (self.between is not None or not self.batch.repeats):
+            return self._own_motion(finer)
         carrier, mean = (self.batch.inputs, np.zeros(len(self.mean))) if driven else (self.core, self.mean)
         name = "input" if driven else "core"
         q = self._kept((f"q of {name}", order, finer), lambda: displacement(carrier, mean, self.batch, order))
         return q, self._kept((f"flow of {name}", order, finer), lambda: flow_rate(carrier, self.batch, order))
+
+    def _own_motion(self, finer: int) -> tuple[FloatArray, FloatArray]:
+        names = [(f"{what} as it is followed", 0, finer) for what in ("q", "flow")]
+        if names[0] not in self.cache:
+            ends = self.batch.signal(self.core, finer), self.batch.rate(self.core, finer)
+            found = ends if self.between is None else self.between(self.core, self.drive)
+            self.cache.update(zip(names, found, strict=True))
+        return self.cache[names[0]], self.cache[names[1]]
 
     def input_signal(self, finer: int = 1) -> FloatArray:
         """The input over one period, (M, L·finer)."""

@@ -9,6 +9,7 @@ from identification.arrays import ComplexArray, FloatArray
 from identification.comparison.batch import Batch
 from identification.errors import MisuseError
 from identification.places.core import Reshaped, core_gradient, core_response
+from identification.places.intersample import OFFSETS, Between, is_followed
 from identification.places.linear import Coefficient, Divisor
 from identification.places.linear_path import images, linear_path
 from identification.places.loop import Loop
@@ -37,7 +38,8 @@ def simulate(setting: Setting, acting: Sequence[Acting], batch: Batch, start: Fl
         (core, mean), force = loop.split(x), loop.force_lines(x)
         closing = Closing(loop, x)
     else:
-        core, mean, force, closing = loop.driven, np.zeros(len(loop.driven)), np.zeros_like(loop.driven), None
+        force, mean, closing = np.zeros_like(loop.driven), np.zeros(len(loop.driven)), None
+        core = loop.answer(force)
     core = core + _reaction(setting, acting, batch)
     return _shown(setting, acting, loop, force, core, core, mean, closing)
 
@@ -77,8 +79,11 @@ def _prepared(setting: Setting, acting: Sequence[Acting], batch: Batch) -> tuple
     seen_otherwise = held is not None or any(isinstance(one, Reshaped) and one.on_entry for one, _ in acting)
     entry = core_response(setting, acting, batch.omega, held, True) if seen_otherwise else response
     forces = [(effect, e[0][:, None]) for effect, e in acting if isinstance(effect, Feedback) and not effect.driven]
-    loop = Loop(response, entry, _actuated(setting, acting, batch), forces, batch, _finer(setting, acting, Feedback))
-    return loop, setting
+    entering, finer = _actuated(setting, acting, batch), _finer(setting, acting, Feedback)
+    if not (setting.structure.is_discrete and is_followed(setting.structure, setting.zeta, batch)):
+        return Loop(response, entry, entering, forces, batch, finer), setting
+    between = Between(setting.structure, setting.zeta, batch)
+    return Loop(response, entry, entering, forces, batch, OFFSETS, between), setting
 
 
 def _reaction(setting: Setting, acting: Sequence[Acting], batch: Batch) -> ComplexArray:
@@ -88,7 +93,8 @@ def _reaction(setting: Setting, acting: Sequence[Acting], batch: Batch) -> Compl
         if isinstance(effect, Feedback) and effect.driven:
             finer = _finer(setting, acting, Feedback)
             lines = displacement(batch.inputs, still, batch, effect.order), flow_rate(batch.inputs, batch, effect.order)
-            total += e[0][:, None] * effect.lines(batch, *(batch.signal(one, finer) for one in lines))
+            q, flow = (batch.signal(one, finer) for one in lines)
+            total += e[0][:, None] * effect.lines(batch, q, flow)
     return total
 
 
@@ -109,13 +115,14 @@ def _shown(
     linear = factored + path.beside * through
     if held is not None and path.acts:
         linear = linear + images(setting, acting, batch.omega, held) * loop.entering
-    output, factor = _measured(linear, acting, batch), path.factor * np.ones_like(core)
+    output = _measured(linear, acting, batch)
+    output, factor = output + batch.transient(output), path.factor * np.ones_like(core)
     made = (loop.response, loop.entry, loop.entering, drive, core, factored, linear, output, factor, tuple(acting))
 
     def gradient(seen: bool) -> ComplexArray:
         return core_gradient(setting, acting, batch.omega, held if seen else None, seen)
 
-    return Flow(batch, setting, *made, gradient, mean, closing)
+    return Flow(batch, setting, *made, gradient, mean, closing, loop.between)
 
 
 def _changed(setting: Setting, acting: Sequence[Acting]) -> Setting:

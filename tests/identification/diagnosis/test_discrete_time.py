@@ -58,8 +58,14 @@ def test_a_delay_of_one_sample_is_found_as_such():
     assert found.best.fit.model.effects[0].coefficients[0, 0] == pytest.approx(0.5, rel=0.05)
 
 
-def test_a_record_without_period_shows_linear_effects_only():
+def test_a_record_without_period_shows_linear_effects():
     found = diagnose(MODEL, records(3, lambda y: y + 0.3 * np.concatenate([[0], y[:-1]]), periodic=False))
     assert found.announced
-    reasons = {one.effect.kind: one.reason for one in found.visibility}
-    assert "records" in reasons["cubic_sensor"]
+    assert found.lack_of_fit.p_value < 1e-6
+
+
+def test_a_record_without_period_shows_a_cubic_sensor():
+    found = diagnose(MODEL, records(1, lambda y: y + 0.01 * y**3, periodic=False))
+    assert first(found) == "cubic_sensor"
+    assert found.best.fit.model.effects[0].coefficients[0, 0] == pytest.approx(0.01, rel=0.05)
+    assert found.verdict == "explained"
