@@ -212,7 +212,7 @@ def _of_periodic(m: int, record: TimeRecord, mean_value: bool) -> Batch:
         half_width=noise.half_width,
         ends=noise.ends[None],
         nuisance=left_in_mean(period, 0 if trend is None else trend.degree, count, walks)[None],
-        slopes=_slopes(y)[None],
+        slopes=_slopes(np.where(excited, y - _between(u, y, excited) * u, y))[None],
         between=(between_harmonics(level, count),),
         disturbances=(disturbances,),
         channels=record.channels,
@@ -240,11 +240,27 @@ def _notes(m: int, noise: NoiseOfMean, step: float) -> tuple[tuple[int, str], ..
 
 
 def _noise(u: ComplexArray, y: ComplexArray, excited: BoolArray, real: BoolArray, walks: bool) -> NoiseOfMean:
-    """Of the mean of E = Y − Ĝ U: noise on the input counts where it is excited."""
-    ratio = np.where(excited, y.mean(axis=0) / np.where(excited, u.mean(axis=0), 1.0), 0.0)
-    found = (wandering_noise if walks else noise_of_mean)(y - ratio * u, real)
+    """Of the mean of E = Y − Ĝ U at excited lines, with Ĝ between them on straight lines, and of Y at the others.
+
+    Where the input was measured with noise, that of E is the same kind at neighbouring lines only when Ĝ U is taken off
+    all of them; pooled with lines at which nothing is taken off it would be judged too quiet.
+    """
+    of = wandering_noise if walks else noise_of_mean
     smallest = 1e-26 * float(np.mean(abs(y) ** 2)) + float(np.finfo(np.float64).tiny)
+    found = of(y - _between(u, y, excited) * u, real)
+    if np.any(np.ptp(abs(u - u.mean(axis=0)), axis=0) > 1e-12 * abs(u).max()) and not excited.all():
+        found = replace(found, variance=np.where(excited, found.variance, of(y, real).variance))
     return replace(found, variance=np.maximum(found.variance, smallest))
+
+
+def _between(u: ComplexArray, y: ComplexArray, excited: BoolArray) -> ComplexArray:
+    """Ĝ (K,): Ȳ/Ū at the excited lines, and on straight lines between them."""
+    lines = np.flatnonzero(excited)
+    if not len(lines):
+        return np.zeros(len(excited), dtype=np.complex128)
+    ratio = y.mean(axis=0)[lines] / u.mean(axis=0)[lines]
+    every = np.arange(len(excited))
+    return np.asarray(np.interp(every, lines, ratio.real) + 1j * np.interp(every, lines, ratio.imag))
 
 
 def _classes(excited: BoolArray) -> IntArray:
