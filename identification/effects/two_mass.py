@@ -30,7 +30,6 @@ class TwoMass(Reshaped):
 
     kind: ClassVar[str] = "two_mass"
     title: ClassVar[str] = "second mass behind a spring"
-    domain: ClassVar[str] = "mechanical"
     unit: ClassVar[str] = "input unit per output unit · s^(2 − d)"
     source: ClassVar[str] = "[Ljung1999, Section 4.2]"
     sign: ClassVar[int] = 1
