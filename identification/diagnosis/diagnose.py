@@ -178,7 +178,7 @@ def _instead(
         grown = fit(model, rows, iterations=LONGER)
         left = _beyond(before, misfit("lack of fit with the variance", grown))
         price = np.log(rows.count) + 2 * np.log(one.variants)
-        bic = float(grown.residual @ grown.residual) + _spread_out(rows) + price
+        bic = float(grown.residual @ grown.residual) + _spread_out(rows, base.rows) + price
         shaped = one.effect.power(base.flows[0]) is None or evenly_explained(grown)
         if left.acceptable and shaped and all(bic < other.bic for other in rivals):
             return one, left
@@ -191,9 +191,13 @@ def _beyond(before: Rest, after: TestResult) -> Rest:
     return Rest(after, before.share * float(np.sqrt(excess / max(was, 1.0))))
 
 
-def _spread_out(rows: Rows) -> float:
+def _spread_out(rows: Rows, noise: Rows) -> float:
     """ln det of the variance of the records against that of the noise alone."""
-    return sum(batch.log_determinant for batch in rows.batches)
+    total = sum(batch.log_determinant for batch in rows.batches)
+    for wider, alone in zip(rows.batches, noise.batches, strict=True):
+        used = alone.weights_of_rows > 0
+        total += 2 * float(np.sum(np.log(alone.weights_of_rows[used] / wider.weights_of_rows[used])))
+    return total
 
 
 def _announced(listed: ShortList) -> tuple[Evidence, ...]:
