@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.optimize import brentq
 
 from identification.arrays import BoolArray, FloatArray
 
@@ -12,6 +13,7 @@ CANCELLED = 1e-14
 COARSEST = 1e-6
 LARGEST = 1e100
 LEAST = 1e-60
+ABOVE = 1e-12
 
 
 @dataclass(frozen=True, eq=False)
@@ -151,8 +153,13 @@ def _crossing(share: Callable[[float], float]) -> float:
             return np.inf
     while high > 1 / LARGEST and share(high / 4) <= 1:
         high /= 4
-    low = high / 4
-    for _ in range(60):
-        middle = (low + high) / 2
-        low, high = (low, middle) if share(middle) <= 1 else (middle, high)
-    return high
+
+    def excess(logarithm: float) -> float:
+        return float(np.log(max(share(float(np.exp(logarithm))), LEAST)))
+
+    top = float(np.log(high))
+    if excess(top - np.log(4)) <= 0:
+        return high / 4
+    if excess(top) >= 0:
+        return high
+    return float(np.exp(brentq(excess, top - np.log(4), top, xtol=1e-13)) * (1 + ABOVE))

@@ -3,17 +3,19 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import product
+from typing import Any
 
 import numpy as np
 from scipy.linalg import block_diag
 
 from app.arrays import finite_or_none
-from app.schemas.designs import MAX_POINTS, AxesGrid, Box, DecisionDocument, DesignRequest, PointGrid
+from app.schemas.designs import MAX_POINTS, AxesGrid, Box, DecisionDocument, DesignRequest, PointGrid, PromiseDocument
 from identification.arrays import FloatArray
 from identification.errors import MisuseError, RangeError, ShapeError
 from identification.models.model import Model
 from identification.scheduling import OneVariableBasis, ParameterDependence
 from oed.decisions import Decision
+from oed.robust import Kept
 
 SAME_POINT = 1e-9
 
@@ -107,6 +109,22 @@ def _inverse(covariance: FloatArray) -> FloatArray:
         raise MisuseError("the covariance of the model is singular", "use_prior_information")
     inverse = np.linalg.inv(covariance / np.outer(scale, scale)) / np.outer(scale, scale)
     return np.asarray((inverse + inverse.T) / 2)
+
+
+def promise(kept: Kept) -> dict[str, Any]:
+    """How a promise is kept, as JSON."""
+    return PromiseDocument(
+        asked_probability=kept.probability,
+        kept=kept.kept,
+        checked=kept.checked,
+        lowest_probability=kept.lowest,
+        highest_probability=kept.highest,
+        scenarios=kept.scenarios,
+        scenario_gap=kept.scenario_gap,
+        scaling=kept.scaling,
+        energy_at_estimate=kept.energy_at_estimate,
+        unstable_draws=kept.unstable,
+    ).as_json()
 
 
 def decision_document(target: int, decision: Decision) -> DecisionDocument:

@@ -75,6 +75,23 @@ class EnergyCaps(CamelModel):
     per_point: list[PointCap] = Field(default_factory=list)
 
 
+class PromiseRequest(CamelModel):
+    """The targets hold with this probability over what is not known of the model, not only at its parameters.
+
+    For plants without effects, with FIR or line spectra on a grid, and models with a covariance.
+    """
+
+    probability: Annotated[Double, Field(ge=0.5, lt=1)] = Field(
+        default=0.95, description="that the targets are met at the true parameters"
+    )
+    noise_deviation: Annotated[Double, Field(ge=0, lt=1)] = Field(
+        default=0.0, description="relative standard deviation of the noise variance of the model; 0: it is known"
+    )
+    seed: Annotated[Integer, Field(ge=0, le=2**53)] = Field(
+        default=0, description="of the draws from the covariance of the model"
+    )
+
+
 class DesignRequest(CamelModel):
     """What accuracy is asked for, and what is allowed to reach it."""
 
@@ -100,6 +117,9 @@ class DesignRequest(CamelModel):
     prior_experiment_ids: Annotated[list[Identifier], Field(min_length=1, max_length=1000)] | None = Field(
         default=None,
         description="in place of that, experiments whose information counts, also about effects that the model lacks",
+    )
+    promise: PromiseRequest | None = Field(
+        default=None, description="null: the targets are met at the parameters of the model"
     )
     noise_variance: Positive | None = Field(
         default=None, description="of the white noise e, a sample; null: that of the model"
@@ -192,6 +212,21 @@ class DecisionDocument(CamelModel):
     )
 
 
+class PromiseDocument(CamelModel):
+    """How a promise is kept, checked on fresh draws from the covariance of the model."""
+
+    asked_probability: Double
+    kept: Integer = Field(description="fresh draws at which all targets are met")
+    checked: Integer = Field(description="fresh draws")
+    lowest_probability: Double = Field(description="lower end of the exact 95 % interval (Clopper and Pearson)")
+    highest_probability: Double
+    scenarios: Integer = Field(description="models that the certified problem holds at once")
+    scenario_gap: Double = Field(description="certified relative gap of that problem")
+    scaling: Double = Field(description="of all energies, so that the promised share of a pool of draws is met")
+    energy_at_estimate: Double = Field(description="that the parameters of the model alone would take")
+    unstable_draws: Integer = Field(description="draws that were unstable and refused")
+
+
 class Design(CamelModel):
     """The experiments that reach the accuracy asked for with the least energy, and the certificate of it."""
 
@@ -222,6 +257,10 @@ class Design(CamelModel):
     )
     binding: list[BindingDocument]
     decisions: list[DecisionDocument] = Field(default_factory=list, description="of targets about effects")
+    promise: PromiseDocument | None = Field(
+        default=None,
+        description="null without one; with one, lowerBound and gap refer to the targets at the model's parameters",
+    )
 
 
 class DesignList(CamelModel):

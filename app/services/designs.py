@@ -65,6 +65,8 @@ def _check_prior(model: Model, request: DesignRequest, experiments: Sequence[Mea
     covariance = model.joint_covariance if model.effects else model.covariance
     if request.use_prior_information and covariance is None:
         raise UnprocessableError.at("/usePriorInformation", "the model has no covariance")
+    if request.promise is not None and covariance is None:
+        raise UnprocessableError.at("/promise", "the model has no covariance from which parameters could be drawn")
     if request.use_prior_information and experiments:
         detail = "the model was learnt from experiments too, and what they tell would count twice; give one of the two"
         raise UnprocessableError.at("/priorExperimentIds", detail)

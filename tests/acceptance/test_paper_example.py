@@ -1,9 +1,21 @@
 """The example of [Ghosh2018, Section 5] through HTTP: energies, operating points and certificates."""
 
+import numpy as np
 import pytest
 
-from tests.support.api import Api, Json
-from tests.support.paper import BOX, FIGURES, LINES, Figure, energies, prepared
+from tests.support.api import Api, Json, pointers
+from tests.support.paper import (
+    BOX,
+    FIGURES,
+    LINES,
+    NOISE_VARIANCE,
+    THETA,
+    Figure,
+    energies,
+    fir,
+    only,
+    prepared,
+)
 
 
 @pytest.fixture(scope="module")
@@ -86,3 +98,19 @@ def test_the_same_request_under_one_key_is_one_job(api: Api) -> None:
     assert first.headers["location"] == f"/v1/jobs/{first.json()['id']}"
     other = api.http.post("/designs", json={**body, "samples": 2000}, headers=headers)
     assert api.problem(other)["status"] == 409
+
+
+def test_a_promise_is_kept_and_checked(api: Api) -> None:
+    plant, unknown = prepared(api)
+    covariance = np.diag(np.array([0.006, 0.0008, 0.12, 0.02, 0.05, 0.01]) ** 2).tolist()
+    stated = {"plantId": plant["id"], "theta": THETA, "noiseVariance": NOISE_VARIANCE, "covariance": covariance}
+    figure = Figure("promised", 0.0, points=only(0, 2, 8), family=fir(4))
+    asked = {"promise": {"probability": 0.9, "seed": 4}}
+    design = api.made("/designs", {**figure.body(plant, api.post("/models/stated", stated)), **asked})
+    promise = design["promise"]
+    assert design["outcome"]["status"] == "converged"
+    assert promise["lowestProbability"] < promise["kept"] / promise["checked"] < promise["highestProbability"]
+    assert promise["kept"] / promise["checked"] >= 0.87
+    assert design["totalEnergy"] > promise["energyAtEstimate"]
+    assert design["lowerBound"] <= promise["energyAtEstimate"] * (1 + 1e-9)
+    assert pointers(api.refused("/designs", {**figure.body(plant, unknown), **asked})) == ["/promise"]

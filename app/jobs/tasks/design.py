@@ -1,6 +1,5 @@
 """Designs the experiments of least energy."""
 
-from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -14,6 +13,7 @@ from app.conversion.designs import (
     decision_document,
     energy_caps,
     prior_information,
+    promise,
     searched_model,
 )
 from app.conversion.effects import extended_model
@@ -30,8 +30,10 @@ from app.schemas.plants import Plant
 from identification.comparison.batch import Batch
 from identification.errors import MisuseError
 from identification.models.model import Model, require_matching
+from oed.column_generation import Progress
 from oed.design import Binding, Design, design
 from oed.problem import DecisionTarget, DesignProblem, Target
+from oed.robust import Kept, Promise, promised
 
 KIND = "design"
 FIELDS = {
@@ -49,6 +51,7 @@ FIELDS = {
     "model": "/modelId",
     "degree": "/spectrumFamily/degree",
     "levels": "/spectrumFamily/levels",
+    "promise": "/promise",
     "family": "/spectrumFamily",
     **dict.fromkeys(("effect", "effects", "against", "amplitude"), "/targets"),
 }
@@ -69,8 +72,15 @@ def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
         require_matching(model, experiments)
     with field_named(FIELDS, "/operatingPoints"), within_doubles():
         problem = stated_problem(request, model, document.covariance is not None, experiments)
-        found = design(problem, progress=_reporter(context, request.tolerance))
-    return TaskResult(_document(payload, problem, found))
+        found, kept = _found(request, problem, _reporter(context, request.tolerance))
+    return TaskResult({**_document(payload, problem, found), "promise": None if kept is None else promise(kept)})
+
+
+def _found(request: DesignRequest, problem: DesignProblem, report: Progress) -> tuple[Design, Kept | None]:
+    if request.promise is None:
+        return design(problem, progress=report), None
+    asked = request.promise
+    return promised(problem, Promise(asked.probability, asked.noise_deviation, seed=asked.seed), report)
 
 
 def stated_problem(
@@ -111,7 +121,7 @@ def _fitting_targets(request: DesignRequest, model: Model) -> tuple[Target, ...]
     return tuple(targets)
 
 
-def _reporter(context: TaskContext, tolerance: float) -> Callable[[int, float], None]:
+def _reporter(context: TaskContext, tolerance: float) -> Progress:
     def report(iteration: int, gap: float) -> None:
         reached = np.log(max(min(gap, 1.0), tolerance)) / np.log(tolerance) if np.isfinite(gap) else 0.0
         context.progress(0.05 + 0.9 * float(reached), f"iteration {iteration}, gap {gap:.1e}")
