@@ -129,10 +129,11 @@ def diagnose(
     missing = bool(ordered) and ordered[0].adjusted_p < LEVEL
     listed = refit_short_list(base, ordered if missing else (), origin=model)
     cannot = why_not_judged(base, batches)
-    announced = () if cannot else _announced(listed)
     before = _rest("lack of fit", base, seed)
-    after = _rest("remaining lack of fit", announced[0].fit, seed) if announced else before
     found = variations(base, np.random.default_rng(seed)) if rows.scaled and not cannot else ()
+    drifting = any(one.p_value < STRICT and one.effect.of_periods for one in found)
+    announced = () if cannot else tuple(one for one in _announced(listed) if not (drifting and one.misplaced))
+    after = _rest("remaining lack of fit", announced[0].fit, seed) if announced else before
     varying = _instead(model, base, before, listed.evidence if announced or not before.acceptable else (), found)
     if varying is None:
         verdict, reason = judged(before, after, announced, cannot, why_not_all(batches))
