@@ -7,6 +7,7 @@ import numpy as np
 
 from identification.arrays import FloatArray
 from identification.comparison.lack_of_fit import lack_of_fit
+from identification.diagnosis.measured_scan import on_signals, strong_starts
 from identification.diagnosis.remainder import MATERIAL, Remainder, SmoothRemainder, rest
 from identification.diagnosis.scans import misfit_is_large, scanned_starts, states_scan
 from identification.diagnosis.scores import Score
@@ -23,6 +24,7 @@ LIKELY = 6.0
 ALIKE = 2.0
 HOPELESS, HOPELESS_SHARE = 60.0, 1.5
 HELD = 10.0
+NOISE = 1.5
 LONGER = 40
 STRICT = 1e-3
 IN_THE_RUNNING = 0.5
@@ -87,7 +89,8 @@ def refit_short_list(
     shape. Further parameters that are searched but not fitted cost 2 ln(number of variants), values on a physical
     bound `HELD`. Where the size of the noise is not known, R is the effective number of residuals of the best
     refit, and ln L is that of so many. Where much is missing, effects that state a scan are on the list in any case
-    and begin from the best of it too; `origin`: the model as it was given, around which it is made.
+    and begin from the best of it too; `origin`: the model as it was given, around which it is made. Effects on signals
+    begin from the measured output in their laws where much more than noise is missing (`strong_starts`).
     """
     model = SmoothRemainder(base)
     none = model.of(base)
@@ -95,12 +98,19 @@ def refit_short_list(
     ordered = sorted(scores, key=lambda score: -score.statistic)
     large = misfit_is_large(base)
     scanned = {id(score) for score in ordered if large and states_scan(score.candidate.effect)}
-    ordered = [score for i, score in enumerate(ordered) if i < length or id(score) in scanned]
+    strong = {id(ordered[i]): starts for i, starts in strong_starts(base, ordered).items()}
+    ordered = [
+        score for score in ordered if not strong or id(score) in strong or not on_signals(score.candidate.effect)
+    ]
+    ordered = [score for i, score in enumerate(ordered) if i < length or id(score) in {*scanned, *strong}]
+    ranked = list(strong)
+    ordered.sort(key=lambda score: ranked.index(id(score)) if id(score) in strong else len(ranked))
     found: list[tuple[Score, Fit]] = []
     least = np.inf
     for score in ordered:
         hopeless = (1.0 if base.rows.scaled else HOPELESS_SHARE) * least + HOPELESS
-        one = _refitted(base, score, hopeless, origin if id(score) in scanned else None)
+        around = origin if id(score) in scanned and not least < NOISE * base.rows.count else None
+        one = _refitted(base, score, hopeless, around, strong.get(id(score), ()))
         if one is not None:
             found.append((score, one))
             least = min(least, float(one.residual @ one.residual))
@@ -111,8 +121,19 @@ def refit_short_list(
     best = min((one for _, one in found), key=lambda one: one.cost)
     count = effective_count(best.rows, best.residual)
     evidence = sorted((_judged(model, *pair, count) for pair in found), key=lambda one: one.bic)
-    weighted = _weighted(beside, evidence)
+    weighted = _weighted(beside, _without_needless(evidence))
     return ShortList(tuple(weighted), none, beside, 1 - sum(one.weight for one in weighted))
+
+
+def _without_needless(ordered: Sequence[Evidence]) -> list[Evidence]:
+    """Without effects that refine another one, unless they take at least half of a material rest that it leaves."""
+    left = {one.score.candidate.effect.kind: 1 - one.share for one in ordered if one.announceable}
+
+    def needed(one: Evidence) -> bool:
+        plain = left.get(one.score.candidate.effect.refines)
+        return plain is None or (plain > 0 and 1 - one.share <= plain / 2)
+
+    return [one for one in ordered if needed(one)]
 
 
 def effective_count(rows: Rows, residual: FloatArray) -> float:
@@ -181,9 +202,10 @@ def noise_explains(found: Fit, noise: float = 1.0) -> bool:
     return lack_of_fit("", energy, freedom, found.rows.noise_freedom).p_value >= STRICT
 
 
-def _refitted(base: Fit, score: Score, hopeless: float, origin: Model | None) -> Fit | None:
-    attempts = [_attempt(base, score, start, hopeless) for start in _starts(base, score)]
-    found = [one for one in attempts if one is not None]
+def _refitted(base: Fit, score: Score, hopeless: float, origin: Model | None, strong: Sequence[Fit] = ()) -> Fit | None:
+    found = [fitted for start in strong if (fitted := _carried_on(start, hopeless)) is not None]
+    attempts = [] if found else [_attempt(base, score, start, hopeless) for start in _starts(base, score)]
+    found += [one for one in attempts if one is not None]
     if origin is not None:
         one = score.signature.placed
         starts = scanned_starts(base, origin, one.effect, one.degree)
@@ -261,6 +283,14 @@ def _attempt(base: Fit, score: Score, variant: int, hopeless: float) -> Fit | No
     absent = base.model.plus(replace(start, coefficients=np.zeros_like(start.coefficients)))
     try:
         return fit(absent, base.rows, iterations=13, tolerance=0.05, hopeless=hopeless, start=base.flows)
+    except NoSteadyStateError:
+        return None
+
+
+def _carried_on(start: Fit, hopeless: float) -> Fit | None:
+    """From what the measured output in the law gives; None where no steady state is found there."""
+    try:
+        return fit(start.model, start.rows, iterations=13, tolerance=0.05, hopeless=hopeless, start=start.flows)
     except NoSteadyStateError:
         return None
 

@@ -122,8 +122,13 @@ def _is_first(one: Effect, first: Mapping[tuple[str, int, bool], Feedback]) -> b
 def _taken(effect: Effect, there: Sequence[Effect]) -> str:
     if effect.kind in {one.kind for one in there if one.needs_records or isinstance(one, MisplacedPoint)}:
         return TWICE
-    shaped = {one.place for one in there if one.needs_records and one.fitted_names()}
-    return SHAPED if effect.needs_records and effect.fitted_names() and effect.place in shaped else ""
+    shaped = {_curve(one) for one in there if one.needs_records and one.fitted_names()}
+    return SHAPED if effect.needs_records and effect.fitted_names() and _curve(effect) in shaped else ""
+
+
+def _curve(effect: Effect) -> tuple[str, bool]:
+    """Where it acts, and of forces whether on the displacement or the flow."""
+    return effect.place, isinstance(effect, Feedback) and effect.on_displacement
 
 
 def _variants(fit: Fit, effect: Effect) -> list[Effect]:

@@ -6,6 +6,7 @@ import numpy as np
 
 from identification.arrays import ComplexArray, FloatArray
 
+RIDGE = 1e-14
 Product = Callable[[ComplexArray], ComplexArray]
 
 
@@ -42,7 +43,10 @@ def _norm(x: ComplexArray) -> FloatArray:
 
 def _least(matrix: FloatArray, size: FloatArray) -> tuple[FloatArray, FloatArray]:
     """The weights (M, j) that make ‖size e₁ − matrix · weights‖ least, and what is left of it (M,)."""
-    target = np.zeros(matrix.shape[:2])
-    target[:, 0] = size
-    weights = (np.linalg.pinv(matrix, rcond=1e-13) @ target[..., None])[..., 0]
-    return weights, np.linalg.norm(target - (matrix @ weights[..., None])[..., 0], axis=1)
+    gram = np.swapaxes(matrix, 1, 2) @ matrix
+    ridge = RIDGE * np.trace(gram, axis1=1, axis2=2)[:, None, None] + np.finfo(float).tiny
+    target = size[:, None] * matrix[:, 0]
+    weights = np.linalg.solve(gram + ridge * np.eye(gram.shape[1]), target[..., None])[..., 0]
+    left = -(matrix @ weights[..., None])[..., 0]
+    left[:, 0] += size
+    return weights, np.linalg.norm(left, axis=1)

@@ -8,6 +8,7 @@ import numpy as np
 
 from identification.arrays import ComplexArray, FloatArray
 from identification.comparison.batch import Batch
+from identification.places.aliases import aliases
 from identification.places.intersample import OFFSETS
 from identification.places.motion import motions, powers
 from identification.places.place import Effect, Flow, FurtherParameter
@@ -99,10 +100,15 @@ class Feedback(Effect):
     def tangent(self, e: FloatArray, flow: Flow) -> ComplexArray:
         """∂Y/∂e (1, M, K)."""
         held = OFFSETS if flow.between is not None and self.order == 0 and not self.driven else 1
-        change = self.lines(flow.batch, *flow.motion(self.order, self.driven, flow.finer(self)), held)
+        motion, batch = flow.motion(self.order, self.driven, flow.finer(self)), flow.batch
+        change = self.lines(batch, *motion, held)
         if self.driven:
             return np.asarray((flow.factor * change)[None])
-        return flow.through(-flow.response * change)[None]
+        if flow.between is not None or not batch.repeats:
+            return flow.through(-flow.response * change)[None]
+        structure, zeta = flow.setting.structure, flow.setting.zeta
+        beyond = aliases(self.force(*motion), self.differentiated, structure, zeta, batch)
+        return (flow.through(-flow.response * change) + beyond)[None]
 
 
 @dataclass(frozen=True)

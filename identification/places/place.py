@@ -186,7 +186,8 @@ class Effect(ABC):
     was measured, not in the plant; `oversampling` of the time grid on which a force is computed in continuous time;
     `shapes` the number of amplitudes; `points_needed`: distinct values of each scheduling variable without which it
     is a lower order under another name; `states` by how many it raises the order of the plant, infinite for distributed
-    effects such as a delay or diffusion; `unseen` says why an experiment does not show it where its signature
+    effects such as a delay or diffusion; `refines` the kind that it contains, which is kept to where it leaves nothing
+    material; `unseen` says why an experiment does not show it where its signature
     vanishes, `unjudged` why it was not looked for where it is not `judgeable`.
     """
 
@@ -204,6 +205,7 @@ class Effect(ABC):
     points_needed: ClassVar[int] = 1
     oversampling: ClassVar[int] = 2
     states: ClassVar[float] = 0
+    refines: ClassVar[str] = ""
     unjudged: ClassVar[str] = ""
     unseen: ClassVar[str] = "invisible in this experiment: the fitted parameters take up all that it changes"
     parameters: ClassVar[tuple[FurtherParameter, ...]] = ()

@@ -8,6 +8,7 @@ import numpy as np
 from identification.arrays import ComplexArray, FloatArray
 from identification.comparison.batch import Batch
 from identification.errors import MisuseError
+from identification.places.aliases import aliases
 from identification.places.core import Reshaped, core_gradient, core_response
 from identification.places.intersample import OFFSETS, Between, is_followed
 from identification.places.linear import Coefficient, Divisor
@@ -115,6 +116,7 @@ def _shown(
     linear = factored + path.beside * through
     if held is not None and path.acts:
         linear = linear + images(setting, acting, batch.omega, held) * loop.entering
+    linear = linear + _aliased(setting, loop, core, mean)
     output = _measured(linear, acting, batch)
     output, factor = output + batch.transient(output), path.factor * np.ones_like(core)
     made = (loop.response, loop.entry, loop.entering, drive, core, factored, linear, output, factor, tuple(acting))
@@ -123,6 +125,16 @@ def _shown(
         return core_gradient(setting, acting, batch.omega, held if seen else None, seen)
 
     return Flow(batch, setting, *made, gradient, mean, closing, loop.between)
+
+
+def _aliased(setting: Setting, loop: Loop, core: ComplexArray, mean: FloatArray) -> ComplexArray:
+    """What the forces of a motion put beyond the Nyquist frequency, on the lines (M, K) where samples show it."""
+    total = np.zeros_like(core)
+    followed_between = loop.between is not None or not loop.batch.repeats
+    for effect, e in loop.forces if loop.finer > 1 and not followed_between else ():
+        force = effect.force(*loop.motion(effect, loop.start(core, mean)))
+        total += e * aliases(force, effect.differentiated, setting.structure, setting.zeta, loop.batch)
+    return total
 
 
 def _changed(setting: Setting, acting: Sequence[Acting]) -> Setting:

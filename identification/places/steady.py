@@ -12,7 +12,8 @@ from identification.places.loop import Loop
 from identification.places.mixing import mixed
 
 TOLERANCE, STALLED = 1e-8, 1e-5
-MIXING, PATIENCE, NEWTON, HALVINGS = 120, 8, 30, 4
+MIXING, PATIENCE, NEWTON, HALVINGS = 120, 8, 25, 4
+PROVED = 4
 SMALLEST_SHARE = 1 / 16
 
 
@@ -73,13 +74,15 @@ def _mixed(loop: Loop, x: ComplexArray) -> tuple[ComplexArray, bool]:
 def _newton(loop: Loop, x: ComplexArray) -> ComplexArray:
     """Newton's method, each record with its own length of the step."""
     rest = loop.update(x) - x
+    sizes = [_error(rest, x)]
     for _ in range(NEWTON):
         step = Linearised(loop, x).solve(rest)
         x, rest, moved = _line_search(loop, x, rest, step)
         size = _error(rest, x)
         if size <= TOLERANCE or (size <= STALLED and not moved):
             return x
-        if not moved or not np.isfinite(size):
+        sizes.append(size)
+        if not moved or not np.isfinite(size) or (len(sizes) > PROVED and size > 0.5 * sizes[-1 - PROVED]):
             break
     if _error(rest, x) <= STALLED:
         return x

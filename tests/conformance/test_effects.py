@@ -102,7 +102,7 @@ def test_tangents_of_filters_and_modes_in_one_model_are_those_of_their_simulatio
 def test_further_parameters_have_their_tangents(effect):
     one = placed(instance(effect), 0, 1)
     length = np.linalg.norm(effect_tangents(one, ROWS, [FLOW])[0])
-    model = MODEL.plus(placed(one.effect, 0, 1, 5.0 / length))
+    model = MODEL.plus(placed(one.effect, 0, 1, 15.0 / length))
     found = fit(model, ROWS, iterations=0)
     exact = differences(found)
     for row in range(-len(effect.fitted_names()), 0):
