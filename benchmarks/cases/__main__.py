@@ -50,6 +50,8 @@ def main() -> None:
     parser.add_argument("folder", type=Path, help="where index.json and the arrays are")
     parser.add_argument("--only", nargs="+", default=[], metavar="NAME", help="these cases alone")
     options = parser.parse_args()
+    if options.output is not None:
+        options.output.parent.mkdir(parents=True, exist_ok=True)
     found = results(options.folder, options.output, options.only)
     shown = ("case", "verdict", "announced", "confident", "seconds", "reason")
     print_table([{name: one.get(name) for name in shown} for one in found])
