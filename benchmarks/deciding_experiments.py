@@ -89,8 +89,8 @@ def first_experiment(pair: Pair) -> list[Played]:
 def diagnosed(pair: Pair, batches: Sequence[Batch], seed: int) -> Diagnosis:
     """Which of the two it is, if one of them; or which of the whole library."""
     if pair.library:
-        return diagnose(MODEL, batches, [one for one in library() if not one.of_measurements], seed=seed)
-    return diagnose(MODEL, batches, [known(kind, "effect") for kind in pair.effects], seed=seed)
+        return diagnose(MODEL, batches, [one for one in library() if not one.of_measurements], seed=seed, material=0.0)
+    return diagnose(MODEL, batches, [known(kind, "effect") for kind in pair.effects], seed=seed, material=0.0)
 
 
 def decided(found: Diagnosis) -> str:

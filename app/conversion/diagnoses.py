@@ -23,7 +23,6 @@ from app.schemas.experiments import Experiment
 from identification.diagnosis import evidence as refits
 from identification.diagnosis.diagnose import Diagnosis, Visibility
 from identification.diagnosis.missing import explained_response, missing_response
-from identification.diagnosis.remainder import MATERIAL
 from identification.diagnosis.scores import Score
 from identification.diagnosis.variances import Variation
 
@@ -47,7 +46,6 @@ def findings(found: Diagnosis, experiments: Sequence[Experiment]) -> dict[str, A
         "reason": found.reason,
         "restBefore": found.rest_before,
         "restAfter": found.rest_after,
-        "material": MATERIAL,
         "noneOfTheseWeight": found.none_weight,
         "variations": [_variation(one, found.variation).as_json() for one in _variations(found)],
         "notes": [NoteDocument(experiment_id=experiments[m].id, text=text).as_json() for m, text in found.notes],

@@ -12,6 +12,7 @@ from app.schemas.effects import EffectParameter, PlacedEffectDocument
 from app.schemas.experiments import Identifier
 from app.schemas.outcomes import OutcomeDocument, TestDocument
 from app.schemas.plants import LongText, Text
+from identification.diagnosis.remainder import MATERIAL
 
 Kind = Annotated[str, Field(min_length=1, max_length=64)]
 Verdict = Literal["nothingMissing", "explained", "partlyExplained", "notInTheLibrary", "cannotBeJudged"]
@@ -39,6 +40,10 @@ class DiagnosisRequest(CamelModel):
     )
     amplitude_degree: AmplitudeDegree = Field(default=0, description="of the amplitudes in each scheduling variable")
     mean_value: bool = Field(default=True, description="judge by the mean value of periodic records too")
+    material: Annotated[Double, Field(ge=0, lt=1)] = Field(
+        default=MATERIAL,
+        description="what is missing is announced where it is more than this share of the output, beyond noise",
+    )
     seed: Seed = Field(default=0, description="of the draws that p-values of the whole family come from")
     name: Text = ""
     description: LongText = ""

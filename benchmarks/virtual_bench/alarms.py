@@ -44,7 +44,7 @@ def one(task: tuple[int, int]) -> dict[str, Any]:
     order, points, share = condition.pop("order"), condition.pop("points", 7), condition.pop("share")
     done, y = _clean(order, points)
     batches = gather(noisy(y, done, share, np.random.default_rng(seed), **condition))
-    found = diagnose(MODEL if order == 2 else FIRST_ORDER, batches, effects(done), seed=seed)
+    found = diagnose(MODEL if order == 2 else FIRST_ORDER, batches, effects(done), seed=seed, material=0.0)
     return {"condition": number, "seed": seed, **_seen(found)}
 
 

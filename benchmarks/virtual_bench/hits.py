@@ -58,7 +58,7 @@ def one(task: tuple[str, float, int]) -> dict[str, Any]:
     kind, share, seed = task
     batches = measured((kind,), share, np.random.default_rng(seed))
     start = perf_counter()
-    found = diagnose(MODEL, batches, effects(design()), seed=seed)
+    found = diagnose(MODEL, batches, effects(design()), seed=seed, material=0.0)
     seconds = perf_counter() - start
     names = [one.score.candidate.effect.kind for one in found.announced]
     by_score = max(found.scores, key=lambda one: one.statistic).candidate.effect.kind

@@ -9,7 +9,7 @@ from identification.arrays import FloatArray
 from identification.comparison.batch import Batch
 from identification.comparison.lack_of_fit import lack_of_fit
 from identification.diagnosis.evidence import LONGER, STRICT, Evidence, ShortList, indistinguishable, refit_short_list
-from identification.diagnosis.remainder import SmoothRemainder, rest
+from identification.diagnosis.remainder import MATERIAL, SmoothRemainder, rest
 from identification.diagnosis.scores import Score, score_tests
 from identification.diagnosis.signatures import Candidate, candidates
 from identification.diagnosis.variances import Variation, describe, evenly_explained, variations, varied
@@ -111,12 +111,15 @@ def diagnose(
     effects: Sequence[Effect] | None = None,
     degree: int = 0,
     seed: int = 0,
+    material: float = MATERIAL,
 ) -> Diagnosis:
     """Which missing effect the measurements point to.
 
     θ (and the effects already in the model) are fitted first; every effect of the library is judged by its score
-    test, the short list is refitted. `degree`: of the amplitudes as polynomials in p. Raises MisuseError when the
-    measurements are not those of the model's time domain or range, or leave nothing to judge by.
+    test, the short list is refitted. `degree`: of the amplitudes as polynomials in p. Where all that is missing is at
+    most `material`, as a share of the output beyond noise, nothing is announced: with little noise no plant is ever
+    exact; scores and evidence still tell what it looks like. Raises MisuseError when the measurements are not those of
+    the model's time domain or range, or leave nothing to judge by.
     """
     rows = rows_of(model, batches)
     base = fit(model, rows, iterations=LONGER)
@@ -132,7 +135,11 @@ def diagnose(
     before = _rest("lack of fit", base, seed)
     found = variations(base, np.random.default_rng(seed)) if rows.scaled and not cannot else ()
     drifting = any(one.p_value < STRICT and one.effect.of_periods for one in found)
-    announced = () if cannot else tuple(one for one in _announced(listed) if not (drifting and one.misplaced))
+    announced = (
+        ()
+        if cannot or before.share <= material
+        else tuple(one for one in _announced(listed) if not (drifting and one.misplaced))
+    )
     after = _rest("remaining lack of fit", announced[0].fit, seed) if announced else before
     varying = _instead(model, base, before, listed.evidence if announced or not before.acceptable else (), found)
     if varying is None:

@@ -31,8 +31,8 @@ def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
         batches = kept_batches(payload["experiments"], context.arrays, request.mean_value)
         context.progress(0.3, "what each effect would change")
         effects = chosen_effects(request.effects, request.domain)
-        found = diagnose(model, batches, effects, request.amplitude_degree, request.seed)
-        document = findings(found, experiments)
+        found = diagnose(model, batches, effects, request.amplitude_degree, request.seed, request.material)
+        document = {**findings(found, experiments), "material": request.material}
         decisive = deciding_design(found, experiments, payload["plant"]["id"], payload["model"]["id"])
         document["decidingDesign"] = None if decisive is None else decisive.as_json()
     kept = {name: payload["request"][name] for name in KEPT}
