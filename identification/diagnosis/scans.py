@@ -24,19 +24,28 @@ def scanned_starts(base: Fit, origin: Model, effect: Effect, degree: int) -> lis
     """Models with the effect, from which its refit may begin: the best of its scan after a few steps.
 
     The scan is made around the model as it was given and around its refit `base` without the effect: where much is
-    missing the refit has bent its parameters to make up for it, and leads nowhere.
+    missing the refit has bent its parameters to make up for it, and leads nowhere. Of amplitudes that fit alike, such
+    as delays that differ by a period, the smallest is kept.
     """
-    tried: list[tuple[float, Model]] = []
+    tried: list[tuple[float, float, Model]] = []
     for model in (origin, base.model):
         flows = tuple(model.respond(batch) for batch in base.rows.batches)
         variables = flows[0].setting.points.shape[1]
         for one, amplitude in effect.scan(flows):
             trial = model.plus(placed(one, degree, variables, amplitude))
-            tried.append((_after_a_step(trial, base.rows), trial))
-    few = [model for cost, model in sorted(tried, key=lambda pair: pair[0])[:TRIED] if np.isfinite(cost)]
+            tried.append((_after_a_step(trial, base.rows), abs(amplitude), trial))
+    few = [model for cost, model in _smallest_of_alike(tried)[:TRIED] if np.isfinite(cost)]
     begun = [fit(model, base.rows, iterations=FEW_STEPS, tolerance=0.05) for model in few]
     best = sorted(begun, key=lambda one: one.cost)[:CARRIED_ON]
     return [one.model for one in best]
+
+
+def _smallest_of_alike(tried: list[tuple[float, float, Model]]) -> list[tuple[float, Model]]:
+    """(cost, model) by cost, one of each cost."""
+    kept: dict[str, tuple[float, Model]] = {}
+    for cost, _, model in sorted(tried, key=lambda one: one[1]):
+        kept.setdefault(f"{cost:.6e}", (cost, model))
+    return sorted(kept.values(), key=lambda one: one[0])
 
 
 def _after_a_step(model: Model, rows: Rows) -> float:
