@@ -21,7 +21,7 @@ from identification.diagnosis.staircase import conclusion, staircase
 from identification.extension.fit import Fit, fit
 
 SHARE = 0.03
-UNLIKE_OTHERS = ("coulomb_friction", "resonance", "quadratic_sensor", "cubic_dependence", "backlash")
+UNLIKE_OTHERS = ("resonance", "quadratic_sensor", "cubic_dependence", "backlash")
 MOSTLY = 90.0
 
 

@@ -58,7 +58,7 @@ def test_the_seeds_do_not_depend_on_the_noise_levels_asked_for():
 
 
 def test_an_effect_outside_the_library_is_called_so_and_its_shape_is_seen():
-    runs = [unknown.one((kind, 0)) for kind in ("resonance", "coulomb_friction")]
+    runs = [unknown.one((kind, 0)) for kind in ("resonance", "backlash")]
     assert [run["conclusion"] for run in runs] == 2 * ["not in the library"]
     assert not any(run["confident"] for run in runs)
     assert all(run["correlation of the map"] > 0.9 and run["correlation of the response"] > 0.7 for run in runs)
