@@ -17,6 +17,7 @@ from identification.places.placed import placed
 
 SHARP = 1e-3
 NOTHING = 1e-6
+MOTION = ("order", "driven")
 
 
 def known(kind: str, field: str) -> Effect:
@@ -30,10 +31,13 @@ def known(kind: str, field: str) -> Effect:
 def named(kind: str, parameters: Sequence[float]) -> Effect:
     """The effect of the library with its further parameters, in the order in which a diagnosis lists them.
 
-    Raises RangeError when there is none of this kind, or the parameters are not its own.
+    Those that say how a force meets the motion (`MOTION`) may be left out: it then acts on the output itself, taken as
+    a displacement. Raises RangeError when there is none of this kind, or the parameters are not its own.
     """
     effect = known(kind, "effect")
-    own = [one.name for one in dataclasses.fields(effect) if isinstance(getattr(effect, one.name), int | float)]
+    every = [one.name for one in dataclasses.fields(effect) if isinstance(getattr(effect, one.name), int | float)]
+    shape = [name for name in every if name not in MOTION]
+    own = shape if len(parameters) == len(shape) else every
     if len(parameters) != len(own):
         which = f" ({', '.join(own)})" if own else ""
         raise RangeError(f"{kind} has {len(own)} further parameters{which}, {len(parameters)} were given", "parameters")

@@ -5,6 +5,7 @@ from typing import Any, Literal
 from pydantic import Field
 
 from app.schemas.common import CamelModel, Double, Integer
+from app.schemas.diagnoses import Domain
 
 
 class CatalogueOption(CamelModel):
@@ -40,7 +41,7 @@ class EffectEntry(CamelModel):
     kind: str = Field(description="what to name in `effects` or `effect`")
     title: str
     description: str
-    domain: Literal["general", "mechanical", "impedance"] = Field(description="the kind of plant it belongs to")
+    domain: Domain = Field(description="the kind of plant it belongs to")
     place: str = Field(description="where it acts")
     unit: str = Field(description="unit of its amplitude")
     sign: Literal["any", "positive", "negative"] = Field(description="of a physical amplitude")

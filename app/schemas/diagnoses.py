@@ -16,7 +16,7 @@ from identification.diagnosis.remainder import MATERIAL
 
 Kind = Annotated[str, Field(min_length=1, max_length=64)]
 Verdict = Literal["nothingMissing", "explained", "partlyExplained", "notInTheLibrary", "cannotBeJudged"]
-Domain = Literal["general", "mechanical", "impedance"]
+Domain = Literal["general", "mechanical", "electrical", "impedance"]
 AmplitudeDegree = Annotated[Integer, Field(ge=0, le=3)]
 Seed = Annotated[Integer, Field(ge=0)]
 

@@ -78,9 +78,9 @@ def test_matrices_are_refused_by_a_plant_of_one_input_and_output(api: Api) -> No
 GOOD = responses.measured(1.0)
 FILES: dict[str, tuple[str, bytes, str]] = {
     "another number of frequencies": ("a.npz", responses.npz(w=GOOD.frequencies[:-1], g=GOOD.response), "shape"),
-    "four dimensions": ("a.npz", responses.npz(w=GOOD.frequencies, g=np.ones((60, 2, 2, 2))), "shape"),
-    "an output too many": ("a.npz", responses.npz(w=GOOD.frequencies, g=np.ones((60, 3, 2))), "3 outputs"),
-    "a table for four channels": ("a.npz", responses.npz(w=GOOD.frequencies, g=np.ones((60, 4))), "shape"),
+    "four dimensions": ("a.npz", responses.npz(w=GOOD.frequencies, g=1j * np.ones((60, 2, 2, 2))), "shape"),
+    "an output too many": ("a.npz", responses.npz(w=GOOD.frequencies, g=1j * np.ones((60, 3, 2))), "3 outputs"),
+    "a table for four channels": ("a.npz", responses.npz(w=GOOD.frequencies, g=1j * np.ones((60, 4))), "shape"),
     "repeated frequencies": ("a.npz", responses.npz(w=np.ones(60), g=GOOD.response), "twice"),
     "an entry missing": ("a.csv", b"omega,re_y1_u1,re_y2_u2,im_y1_u1,im_y2_u2\n1,1,1,1,1\n", "output 1 and input 2"),
     "parts of other sizes": (
