@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import product
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.linalg import block_diag
@@ -15,7 +15,9 @@ from identification.errors import MisuseError, RangeError, ShapeError
 from identification.models.model import Model
 from identification.scheduling import OneVariableBasis, ParameterDependence
 from oed.decisions import Decision
-from oed.robust import Kept
+
+if TYPE_CHECKING:
+    from oed.robust import Kept
 
 SAME_POINT = 1e-9
 
@@ -111,7 +113,7 @@ def _inverse(covariance: FloatArray) -> FloatArray:
     return np.asarray((inverse + inverse.T) / 2)
 
 
-def promise(kept: Kept) -> dict[str, Any]:
+def promise(kept: "Kept") -> dict[str, Any]:
     """How a promise is kept, as JSON."""
     return PromiseDocument(
         asked_probability=kept.probability,

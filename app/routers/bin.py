@@ -8,7 +8,7 @@ from app.dependencies import ContainerDependency, Cursor, Limit
 from app.schemas.bin import Collection, DeletionList, RenameRequest, ResourceLink, ResourceLinks
 from app.services import bin as bins
 
-router = APIRouter(tags=["bin"])
+router = APIRouter(tags=["deletions"])
 
 
 @router.get("/bin")
