@@ -72,6 +72,7 @@ def test_what_cannot_be_is_told_with_advice_and_at_the_field(visit: Visit, serve
     page.get_by_label("to (Hz)").fill("4")
     page.get_by_role("button", name="Design the experiments").click()
     page.get_by_text("the band ends above the Nyquist frequency").wait_for()
+    page.locator("input[aria-invalid='true']").wait_for()
     assert page.get_by_label("to (Hz)").get_attribute("aria-invalid") == "true"
     page.get_by_label("to (Hz)").fill("0.1")
     page.get_by_label("most energy at one point").fill("1e-6")
