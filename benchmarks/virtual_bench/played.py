@@ -5,10 +5,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from benchmarks.virtual_bench.bench import PERIOD, SAMPLE_TIME, STEPS, Bench, Experiments, on_half_steps
+from identification.channels import Channel, Channels
 from identification.signals import TimeRecord
 from oed.spectra.multisines import MultisineSpectrum
 
 Played = tuple[float, MultisineSpectrum]
+CHANNELS = Channels(Channel(quantity="force"), Channel(quantity="position"))
 
 
 def energy(played: Sequence[Played]) -> float:
@@ -42,5 +44,5 @@ def records(
         u = np.tile(done.inputs[m, :: 2 * STEPS], spectrum.periods)
         y = np.tile(outputs[m], spectrum.periods)
         noise = sigma * generator.standard_normal(len(y))
-        found.append(TimeRecord(u, y + noise, SAMPLE_TIME, (float(point),), PERIOD))
+        found.append(TimeRecord(u, y + noise, SAMPLE_TIME, (float(point),), PERIOD, CHANNELS))
     return found
