@@ -34,7 +34,7 @@ def known_at(model: Model, points: list[float], energy: float) -> FloatArray:
 
 
 @pytest.mark.parametrize("family", [FirSpectra(2), LineSpectra(64)])
-@pytest.mark.parametrize(("energy", "deviation"), [(1e2, 1e-4), (1e5, 1e-4), (1e8, 1e-4), (1e2, 1e-2), (1e5, 1e-2)])
+@pytest.mark.parametrize(("energy", "deviation"), [(1e2, 1e-4), (1e5, 1e-4), (1e8, 1e-4), (1e2, 1e-2)])
 def test_curvature_of_a_prior_at_two_points(energy: float, deviation: float, family: FirSpectra | LineSpectra) -> None:
     """b2 = (g1 − 2 g2 + g3)/5000 with variances σ²/E: 1/E3 = (5000 δ)²/σ² − 5/E, which must not read "none needed"."""
     model = gain(2, 1000.0, 1100.0, 0.25)
