@@ -71,5 +71,5 @@ $(RUNTIME): $(BIN)/python pyproject.toml constraints.txt
 
 $(DEV): $(RUNTIME)
 	@echo "Installing what the tests and checks need into $(VENV) ..."
-	$(PIP) --editable '.[dev]'
+	$(PIP) --editable '.[dev,files]'
 	@touch $@
