@@ -58,6 +58,14 @@ def serve(
 
 
 @application.command()
+def worker() -> None:
+    """Run jobs of the servers that share LPV_OED_DATABASE_URL (PostgreSQL) and LPV_OED_DATA_DIR, without HTTP."""
+    from app.work import work as run
+
+    run()
+
+
+@application.command()
 def design(file: RequestFile, output: Output = None, report: Report = None) -> None:
     """Design experiments without a server; FILE has plant, model, design and, if wanted, signals."""
     from app.offline.commands import design as run

@@ -14,6 +14,7 @@ from fastapi import FastAPI
 from pydantic import ValidationError
 from pydantic_settings import SettingsError
 
+from app.container import Container
 from app.main import create_app
 from app.protocol import PatientProtocol
 from app.settings import Settings
@@ -42,22 +43,14 @@ class Server(uvicorn.Server):
         self._opens = opens
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
-        try:
-            await run_sync(self._container.start)
-        except Exception as error:
-            reason = why_not_started(error)
-            if reason is None:
-                raise
-            raise SystemExit(f"lpv-oed cannot start: {reason}") from None
+        await run_sync(start_or_exit, self._container)
         await super().startup(sockets)
         if self._opens and self.started:
             host = f"[{self.config.host}]" if ":" in self.config.host else self.config.host
             await run_sync(webbrowser.open, f"http://{host}:{self.config.port}")
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
-        end = Timer(SECONDS_TO_STOP, os._exit, [1])  # everything that was acknowledged survives this as well
-        end.daemon = True
-        end.start()
+        end_in_time()
         await run_sync(self._container.stop_work)
         await super().shutdown(sockets)
 
@@ -83,6 +76,24 @@ def serve(opens: bool = False) -> None:
         timeout_graceful_shutdown=SECONDS_FOR_ANSWERS,
     )
     Server(config, application, opens).run()
+
+
+def start_or_exit(container: Container) -> None:
+    """Starts what the service is made of; ends the program with what to change where that cannot be."""
+    try:
+        container.start()
+    except Exception as error:
+        reason = why_not_started(error)
+        if reason is None:
+            raise
+        raise SystemExit(f"lpv-oed cannot start: {reason}") from None
+
+
+def end_in_time() -> None:
+    """Ends the process within ten seconds, however far it comes; all that was acknowledged survives that as well."""
+    end = Timer(SECONDS_TO_STOP, os._exit, [1])
+    end.daemon = True
+    end.start()
 
 
 def require_free(host: str, port: int) -> None:

@@ -30,7 +30,9 @@ class Settings(BaseSettings):
         default=None,
         description="postgresql://… for several servers that share the data directory; default: SQLite in it",
     )
-    workers: int = Field(default=2, ge=1, le=256, description="jobs that run at the same time")
+    workers: int = Field(
+        default=2, ge=0, le=256, description="jobs that run at the same time; 0: lpv-oed worker runs them elsewhere"
+    )
     job_time_limit_seconds: float = Field(default=3600.0, gt=0, description="a job that runs longer is ended")
     job_memory_limit_bytes: int = Field(
         default=4 * GIBIBYTE,
@@ -83,6 +85,10 @@ class Settings(BaseSettings):
             raise ValueError(f"LPV_OED_DATABASE_URL begins with {kind!r}; it must be postgresql://… or sqlite:///…")
         if kind != "sqlite" and find_spec("psycopg") is None:
             raise ValueError("LPV_OED_DATABASE_URL needs a driver: pip install 'lpv-oed[postgresql]'")
+        if kind == "sqlite" and self.workers == 0:
+            raise ValueError(
+                "LPV_OED_WORKERS=0 leaves all jobs to workers, which need LPV_OED_DATABASE_URL=postgresql://…"
+            )
         return self
 
     @property

@@ -83,17 +83,32 @@ def start_server(data_directory: Path, environment: dict[str, str] | None = None
         "PYTHONPATH": str(ROOT),
         **(environment or {}),
     }
-    command = [sys.executable, "-m", "app.serve"]
+    return Server(f"http://127.0.0.1:{port}", data_directory, start_process("app.serve", settings, log), log)
+
+
+def start_process(module: str, settings: dict[str, str], log: Path) -> "subprocess.Popen[bytes]":
+    """Start `python -m module` with these settings in their data directory, its output in `log`."""
     with log.open("wb") as output:
-        process = subprocess.Popen(
-            command,
-            cwd=data_directory,
+        return subprocess.Popen(
+            [sys.executable, "-m", module],
+            cwd=settings["LPV_OED_DATA_DIR"],
             env={**os.environ, **settings},
             stdin=subprocess.DEVNULL,
             stdout=output,
             stderr=subprocess.STDOUT,
         )
-    return Server(f"http://127.0.0.1:{port}", data_directory, process, log)
+
+
+@contextmanager
+def running_worker(data_directory: Path, environment: dict[str, str]) -> "Iterator[subprocess.Popen[bytes]]":
+    """A worker without HTTP on the jobs of servers, killed at the end of the block where it still runs."""
+    settings = {"LPV_OED_DATA_DIR": str(data_directory), "PYTHONPATH": str(ROOT), **environment}
+    process = start_process("app.work", settings, data_directory.parent / f"worker-{free_port()}.log")
+    try:
+        yield process
+    finally:
+        process.kill()
+        process.wait(timeout=PATIENCE)
 
 
 @contextmanager
