@@ -1,6 +1,6 @@
 """What a measurement shows, before anything is fitted to it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -8,6 +8,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from identification.arrays import ComplexArray, FloatArray
 from identification.errors import RangeError
+from identification.measurements.feedback import feedback_warnings
 from identification.signals import FrequencyResponse, TimeRecord
 from identification.spectral.periodic_average import excited_lines, transient_periods
 
@@ -59,11 +60,13 @@ def inspect(measurement: TimeRecord | FrequencyResponse) -> RecordInspection | R
     """What a measurement shows, with warnings that say what to change.
 
     The period is stated or found by exact repetition of the input; the noise is what differs between steady periods.
+    Feedback that was not stated is looked for (`feedback_test`).
     Raises RangeError for records or responses of zeros, which cannot be a measurement. Responses with several inputs or
     outputs are judged by the Frobenius norms of their matrices.
     """
     if isinstance(measurement, TimeRecord):
-        return inspect_record(measurement)
+        seen = inspect_record(measurement)
+        return replace(seen, warnings=(*seen.warnings, *feedback_warnings(measurement)))
     return _inspect_response(measurement)
 
 
