@@ -17,7 +17,7 @@ from identification.comparison.responses import ComparedResponses, compared_resp
 from identification.errors import MisuseError
 from identification.extension.fit import Fit, fit
 from identification.extension.rows import Rows, effect_tangents, plant_tangents
-from identification.extension.settle import settled
+from identification.extension.settle import off_poles, settled
 from identification.lti.whiteness import orthonormal
 from identification.models.model import Model, require_matching
 from identification.outcome import TestResult
@@ -102,6 +102,7 @@ def compare(model: Model, batches: Sequence[Batch], fitted: bool = True) -> Comp
     the covariance I + J P Jᵀ. Raises MisuseError for a model without (finite) covariance then.
     """
     require_matching(model, batches)
+    model = off_poles(model, batches)
     rows = Rows(settled(model, batches, refit=False))
     batches = rows.batches
     flows, judge = _fitted(model, rows) if fitted else _held_out(model, rows)

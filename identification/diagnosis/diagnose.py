@@ -19,7 +19,7 @@ from identification.effects.second_variable import with_logged
 from identification.errors import MisuseError
 from identification.extension.fit import Fit, fit
 from identification.extension.rows import Rows
-from identification.extension.settle import settled
+from identification.extension.settle import off_poles, settled
 from identification.models.model import Model, require_matching
 from identification.outcome import TestResult
 from identification.places.place import Effect
@@ -121,6 +121,8 @@ def diagnose(
     exact; scores and evidence still tell what it looks like. Raises MisuseError when the measurements are not those of
     the model's time domain or range, or leave nothing to judge by.
     """
+    require_matching(model, batches)
+    model = off_poles(model, batches)
     rows = rows_of(model, batches)
     base = fit(model, rows, iterations=LONGER)
     if rows.count <= len(base.tangents):

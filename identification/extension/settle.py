@@ -9,10 +9,12 @@ from identification.comparison.batch import Batch
 from identification.extension.fit import fit
 from identification.extension.rows import Rows
 from identification.models.model import Model
+from identification.places.core import core_response
 from identification.places.place import Setting
 
 ROUNDS, SETTLED = 8, 1e-3
 SETTLING = 0.05
+BESIDE = 1e-6
 
 
 def settled(model: Model, batches: Sequence[Batch], refit: bool = True) -> tuple[Batch, ...]:
@@ -34,6 +36,19 @@ def settled(model: Model, batches: Sequence[Batch], refit: bool = True) -> tuple
         if refit:
             model = fit(model, Rows(found)).model
     return found
+
+
+def off_poles(model: Model, batches: Sequence[Batch]) -> Model:
+    """The model, or one beside it where a pole lies on a line of the batches, at which G has no value.
+
+    An axis that integrates is stated with a_n = 0, and its G(0) is infinite: of θ, what is zero becomes 10⁻⁶ of the
+    largest entry, from which a fit begins as well.
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):
+        finite = all(np.isfinite(core_response(model.setting(b.points), (), b.omega)).all() for b in batches)
+    if finite:
+        return model
+    return replace(model, theta=np.where(model.theta == 0, BESIDE * np.max(abs(model.theta)), model.theta))
 
 
 def _under(model: Model, batch: Batch) -> Batch:
