@@ -117,8 +117,8 @@ def diagnose(
 
     θ (and the effects already in the model) are fitted first; every effect of the library is judged by its score
     test, the short list is refitted. `degree`: of the amplitudes as polynomials in p. Where all that is missing is at
-    most `material`, as a share of the output beyond noise, nothing is announced: with little noise no plant is ever
-    exact; scores and evidence still tell what it looks like. Raises MisuseError when the measurements are not those of
+    most `material`, as a share of the output beyond noise, nothing is refitted or announced: with little noise no plant
+    is ever exact; the scores still tell what it looks like. Raises MisuseError when the measurements are not those of
     the model's time domain or range, or leave nothing to judge by.
     """
     require_matching(model, batches)
@@ -131,17 +131,13 @@ def diagnose(
     seen = [one for one in judged_effects if one.signatures]
     scores = score_tests(base, seen, np.random.default_rng(seed))
     ordered = tuple(sorted(scores, key=lambda one: (one.adjusted_p, one.p_value, -one.statistic)))
-    missing = bool(ordered) and ordered[0].adjusted_p < LEVEL
-    listed = refit_short_list(base, ordered if missing else (), origin=model)
     cannot = why_not_judged(base, batches)
     before = _rest("lack of fit", base, seed)
+    missing = bool(ordered) and ordered[0].adjusted_p < LEVEL and before.share > material
+    listed = refit_short_list(base, ordered if missing else (), origin=model)
     found = variations(base, np.random.default_rng(seed)) if rows.scaled and not cannot else ()
     drifting = any(one.p_value < STRICT and one.effect.of_periods for one in found)
-    announced = (
-        ()
-        if cannot or before.share <= material
-        else tuple(one for one in _announced(listed) if not (drifting and one.misplaced))
-    )
+    announced = () if cannot else tuple(one for one in _announced(listed) if not (drifting and one.misplaced))
     after = _rest("remaining lack of fit", announced[0].fit, seed) if announced else before
     varying = _instead(model, base, before, listed.evidence if announced or not before.acceptable else (), found)
     if varying is None:

@@ -147,6 +147,11 @@ class PhysicalForm(Structure):
         every = np.insert(zeta[..., : self._count], self._fixed, self._known, axis=-1)
         return np.asarray(every * self._scales)
 
+    def sampled(self, zeta: FloatArray, step: float) -> tuple[FloatArray, FloatArray] | None:
+        """That of the `plain` form."""
+        plain = self.to_plain(zeta)
+        return self.plain.sampled(plain, step) if np.all(np.isfinite(plain)) else None
+
     def affine(self, omega: FloatArray) -> tuple[ComplexArray, ComplexArray, ComplexArray, ComplexArray]:
         """A_0 (F,), ∂A (n, F), B_0 (F,), ∂B (n, F) of A = A_0 + ζᵀ∂A, B = B_0 + ζᵀ∂B, without the delay."""
         s = 1j * omega

@@ -1,8 +1,12 @@
-"""The sign of a velocity on a time grid."""
+"""Dry friction, and the sign of a velocity on a time grid."""
+
+from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
 from identification.arrays import FloatArray
+from identification.places.nonlinear import Feedback
 
 ROUNDING = 0.005
 
@@ -17,3 +21,28 @@ def sign(velocity: FloatArray) -> FloatArray:
     change = abs(np.roll(velocity, -1, axis=-1) - np.roll(velocity, 1, axis=-1)) / 4
     rounded = ROUNDING * np.sqrt(np.mean(velocity**2, axis=-1, keepdims=True)) + np.finfo(np.float64).tiny
     return np.asarray(np.clip(velocity / np.maximum(change, rounded), -1.0, 1.0))
+
+
+@dataclass(frozen=True)
+class Friction(Feedback):
+    """f = e (m(|q̇|) sign q̇ + a) [Armstrong1994, Section 2]: m and a are one and zero unless overridden."""
+
+    domain: ClassVar[str] = "mechanical"
+    unit: ClassVar[str] = "input unit"
+    source: ClassVar[str] = "[Armstrong1994, Section 2]"
+    oversampling: ClassVar[int] = 8
+    sign: ClassVar[int] = 1
+    on_displacement: ClassVar[bool] = False
+
+    def size(self, velocity: FloatArray) -> FloatArray:
+        """m (M, L), or what it is at every velocity."""
+        return np.ones(1)
+
+    @property
+    def offset(self) -> float:
+        """a."""
+        return 0.0
+
+    def force(self, x: FloatArray, velocity: FloatArray) -> FloatArray:
+        """m sign q̇ + a, the sign as its mean over each step of the time grid."""
+        return np.asarray(self.size(velocity) * sign(velocity) + self.offset)

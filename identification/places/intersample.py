@@ -96,24 +96,25 @@ def _between(structure: Structure, zeta: bytes, step: float) -> _Between | None:
 
 def _powers(sampled: FloatArray) -> tuple[FloatArray, FloatArray] | None:
     """L = ln S (n, n) and S^{(i + ½)/8} (8, n, n) of a sampled matrix; None where they are not real."""
-    shares = (np.arange(OFFSETS) + 0.5) / OFFSETS
+    found = logarithm(sampled)
+    if found is None:
+        return None
+    return found, np.stack([expm(found * share) for share in (np.arange(OFFSETS) + 0.5) / OFFSETS])
+
+
+def logarithm(sampled: FloatArray) -> FloatArray | None:
+    """L = ln S of a sampled matrix (n, n); None where it is not real."""
     values, vectors = np.linalg.eig(sampled)
     if np.any(values == 0):
         return None
     if np.linalg.cond(vectors) < 1 / UNLIKE:
-        exponents = np.log(values.astype(np.complex128))
-        inverse = np.linalg.inv(vectors)
-        logarithm = (vectors * exponents) @ inverse
-        moved = (vectors * np.exp(shares[:, None, None] * exponents)) @ inverse
+        found = (vectors * np.log(values.astype(np.complex128))) @ np.linalg.inv(vectors)
     else:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            logarithm = np.asarray(logm(sampled), dtype=np.complex128)
-        moved = np.stack([expm(logarithm * share) for share in shares])
-    usable = np.all(np.isfinite(logarithm)) and np.max(abs(logarithm.imag)) <= UNLIKE * np.max(abs(logarithm.real))
-    if not usable:
-        return None
-    return np.asarray(np.real(logarithm), dtype=np.float64), np.asarray(np.real(moved), dtype=np.float64)
+            found = np.asarray(logm(sampled), dtype=np.complex128)
+    usable = np.all(np.isfinite(found)) and np.max(abs(found.imag)) <= UNLIKE * np.max(abs(found.real))
+    return np.asarray(np.real(found), dtype=np.float64) if usable else None
 
 
 def _solving(sampled: FloatArray, output: FloatArray) -> tuple[FloatArray, FloatArray] | None:

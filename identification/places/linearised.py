@@ -5,6 +5,7 @@ from functools import cached_property
 import numpy as np
 
 from identification.arrays import ComplexArray, FloatArray, IntArray
+from identification.places.in_time import LinearisedInTime
 from identification.places.krylov import gmres
 from identification.places.loop import Loop
 from identification.places.motion import displacement, flow_rate, powers
@@ -17,7 +18,8 @@ ACCURATE, PRODUCTS = 1e-3, 40
 class Linearised:
     """The loop around a steady state: δX + G F{f_q δq + f_v δq̇} = δ, solved for δX.
 
-    By a Krylov method on the products with it; the lines that react most are inverted together as its preconditioner.
+    By a Krylov method on the products with it, preconditioned by the same loop with forces that act as impulses on the
+    time grid (`LinearisedInTime`); where plants have no states the lines that react most are inverted together.
     """
 
     def __init__(self, loop: Loop, x: ComplexArray) -> None:
@@ -27,9 +29,10 @@ class Linearised:
             by_q, by_flow = effect.slopes(*loop.motion(effect, x))
             self.slopes.append((effect, e * by_q, e * by_flow))
         self.yielding = loop.yielding(x) if loop.order else np.ones(len(x))
-        self.lines = self._reacting()
 
-    def _reacting(self) -> IntArray:
+    @cached_property
+    def lines(self) -> IntArray:
+        """Those that react most."""
         gain = np.zeros(self.loop.response.shape)
         for effect, by_q, by_flow in self.slopes:
             size = [np.sqrt(np.mean(part**2, axis=1, keepdims=True)) for part in (by_q, by_flow)]
@@ -60,7 +63,37 @@ class Linearised:
         return gmres(self.applied, self._nearly, wanted, tolerance, PRODUCTS)
 
     def _nearly(self, wanted: ComplexArray) -> ComplexArray:
-        """The solution as if only the lines that react did."""
+        """The solution on the time grid; where plants have no states, as if only the lines that react did."""
+        return self._on_lines(wanted) if self._in_time is None else self._over_time(wanted, self._in_time)
+
+    @cached_property
+    def _in_time(self) -> LinearisedInTime | None:
+        plants = self.loop.plants
+        if plants is None:
+            return None
+        by_q, by_flow = (np.sum(parts, axis=0) for parts in list(zip(*self.slopes, strict=True))[1:])
+        return LinearisedInTime(plants, by_q, by_flow)
+
+    def _over_time(self, wanted: ComplexArray, in_time: LinearisedInTime) -> ComplexArray:
+        """With the mean of the displacement as its own equation has it for the forces that are found."""
+        batch, finer, effect = self.loop.batch, self.loop.finer, self.slopes[0][0]
+        core, mean = self.loop.split(wanted)
+        unyielding = np.zeros_like(in_time.by_flow)
+        if np.any(in_time.by_displacement):
+            unyielding += in_time.by_displacement * batch.signal(displacement(core, mean, batch, effect.order), finer)
+        if np.any(in_time.by_flow):
+            unyielding += in_time.by_flow * batch.signal(flow_rate(core, batch, effect.order), finer)
+        force = in_time.force(unyielding)
+        moved = core - self.loop.response * effect.rates(batch) * batch.spectrum(force)
+        if not self.loop.order:
+            return np.asarray(moved)
+        own = 0.0 if effect.differentiated else in_time.by_displacement.mean(axis=1)
+        seen = 0.0 if effect.differentiated else force.mean(axis=1)
+        balance = self.loop.stiffness + own
+        balanced = (self.yielding * mean - seen + own * mean) / np.where(abs(balance) > 0, balance, 1.0)
+        return np.concatenate([moved, balanced[:, None]], axis=1)
+
+    def _on_lines(self, wanted: ComplexArray) -> ComplexArray:
         result = wanted.copy()
         if not len(self.lines) and not self.loop.order:
             return result

@@ -8,9 +8,11 @@ import numpy as np
 
 from identification.arrays import ComplexArray, FloatArray
 from identification.comparison.batch import Batch
+from identification.places.in_time import PlantsInTime, plants_in_time
 from identification.places.intersample import Between
 from identification.places.motion import displacement, flow_rate, static_stiffness
 from identification.places.nonlinear import Feedback
+from identification.places.place import Setting
 
 BALANCING, PASSES = 4, 2
 
@@ -33,6 +35,7 @@ class Loop:
     batch: Batch
     finer: int
     between: Between | None = None
+    setting: Setting | None = None
 
     @cached_property
     def order(self) -> int:
@@ -43,6 +46,17 @@ class Loop:
     def stiffness(self) -> FloatArray:
         """K (M,)."""
         return static_stiffness(self.response, self.batch, self.order)
+
+    @cached_property
+    def plants(self) -> PlantsInTime | None:
+        """The plants as states on the time grid, where all forces act on the same motion, all at once or all later."""
+        kinds = {(effect.order, effect.differentiated) for effect, _ in self.forces}
+        if self.setting is None or len(kinds) != 1 or self.batch.sample_time is None or self.batch.signals is None:
+            return None
+        ((order, differentiated),) = kinds
+        length, structure = self.batch.signals.shape[1] * self.finer, self.setting.structure
+        found = plants_in_time(structure, self.setting.zeta, self.batch.sample_time, self.finer, length, order)
+        return found.of_rates if found is not None and differentiated else found
 
     def motion(
         self, effect: Feedback, x: ComplexArray, force: ComplexArray | None = None

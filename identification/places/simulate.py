@@ -82,9 +82,9 @@ def _prepared(setting: Setting, acting: Sequence[Acting], batch: Batch) -> tuple
     forces = [(effect, e[0][:, None]) for effect, e in acting if isinstance(effect, Feedback) and not effect.driven]
     entering, finer = _actuated(setting, acting, batch), _finer(setting, acting, Feedback)
     if not (setting.structure.is_discrete and is_followed(setting.structure, setting.zeta, batch)):
-        return Loop(response, entry, entering, forces, batch, finer), setting
+        return Loop(response, entry, entering, forces, batch, finer, None, setting), setting
     between = Between(setting.structure, setting.zeta, batch)
-    return Loop(response, entry, entering, forces, batch, OFFSETS, between), setting
+    return Loop(response, entry, entering, forces, batch, OFFSETS, between, setting), setting
 
 
 def _reaction(setting: Setting, acting: Sequence[Acting], batch: Batch) -> ComplexArray:

@@ -12,8 +12,8 @@ from identification.places.loop import Loop
 from identification.places.mixing import mixed
 
 TOLERANCE, STALLED = 1e-8, 1e-5
-MIXING, PATIENCE, NEWTON, HALVINGS = 120, 8, 25, 4
-PROVED = 4
+MIXING, PATIENCE, NEWTON, HALVINGS = 120, 8, 60, 4
+PROVED, ROUGH = 12, 0.02
 SMALLEST_SHARE = 1 / 16
 
 
@@ -76,7 +76,7 @@ def _newton(loop: Loop, x: ComplexArray) -> ComplexArray:
     rest = loop.update(x) - x
     sizes = [_error(rest, x)]
     for _ in range(NEWTON):
-        step = Linearised(loop, x).solve(rest)
+        step = Linearised(loop, x).solve(rest, ROUGH)
         x, rest, moved = _line_search(loop, x, rest, step)
         size = _error(rest, x)
         if size <= TOLERANCE or (size <= STALLED and not moved):
