@@ -1,7 +1,7 @@
 """The diagnosis: is something missing, which effects have its shape, and which of them cannot be told apart."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -9,6 +9,7 @@ from identification.arrays import FloatArray
 from identification.comparison.batch import Batch
 from identification.comparison.lack_of_fit import lack_of_fit
 from identification.diagnosis.evidence import LONGER, STRICT, Evidence, ShortList, indistinguishable, refit_short_list
+from identification.diagnosis.record_by_record import record_by_record
 from identification.diagnosis.remainder import MATERIAL, SmoothRemainder, rest
 from identification.diagnosis.scores import Score, score_tests
 from identification.diagnosis.signatures import Candidate, candidates
@@ -23,6 +24,7 @@ from identification.extension.settle import off_poles, settled
 from identification.models.model import Model, require_matching
 from identification.outcome import TestResult
 from identification.places.place import Effect
+from identification.places.variance import ParameterSpread
 
 DETECTION = 1.959963984540054 + 1.2815515655446004
 LEVEL = 0.05
@@ -180,15 +182,42 @@ def _instead(
         if one.p_value >= STRICT:
             continue
         rivals = [each for each in evidence if not (one.effect.of_periods and each.misplaced)]
-        rows = Rows(varied(base, one), base.rows.scales)
-        grown = fit(model, rows, iterations=LONGER)
-        left = _beyond(before, misfit("lack of fit with the variance", grown))
-        price = np.log(rows.count) + 2 * np.log(one.variants)
-        bic = float(grown.residual @ grown.residual) + _spread_out(rows, base.rows) + price
-        shaped = one.effect.power(base.flows[0]) is None or evenly_explained(grown)
-        if left.acceptable and shaped and all(bic < other.bic for other in rivals):
-            return one, left
+        varying, left, bic = _scattered(base, one, before) or _spread(model, base, one, before)
+        if left.acceptable and all(bic < other.bic for other in rivals):
+            return varying, left
     return None
+
+
+def _scattered(base: Fit, one: Variation, before: Rest) -> tuple[Variation, Rest, float] | None:
+    """What a coefficient of its own in every record leaves, however much it varies, with its BIC; the best coefficient.
+
+    None for what varies otherwise, and where records do not tell their coefficients.
+    """
+    if not (isinstance(one.effect, ParameterSpread) and one.effect.within_points):
+        return None
+    records = record_by_record(base)
+    if records is None:
+        return None
+    tried = [(records.scattered(i), i) for i in range(records.coefficients.shape[1])]
+    (size, off, spread), i = min(tried, key=lambda each: each[0][1] + each[0][2])
+    freedom = float(base.rows.shares.sum()) - len(base.tangents)
+    test = lack_of_fit("lack of fit with the variance", records.energy + off, freedom, base.rows.noise_freedom)
+    varying = replace(one, effect=replace(one.effect, coefficient=i), size=size)
+    return varying, _beyond(before, test), records.energy + off + spread + _price(base, one)
+
+
+def _price(base: Fit, one: Variation) -> float:
+    return float(np.log(base.rows.count) + 2 * np.log(one.variants))
+
+
+def _spread(model: Model, base: Fit, one: Variation, before: Rest) -> tuple[Variation, Rest, float]:
+    """What a variance of its size leaves, to first order in what varies, and its BIC."""
+    rows = Rows(varied(base, one), base.rows.scales)
+    grown = fit(model, rows, iterations=LONGER)
+    left = _beyond(before, misfit("lack of fit with the variance", grown))
+    shaped = one.effect.power(base.flows[0]) is None or evenly_explained(grown)
+    bic = float(grown.residual @ grown.residual) + _spread_out(rows, base.rows) + _price(base, one)
+    return one, left, bic if shaped else np.inf
 
 
 def _beyond(before: Rest, after: TestResult) -> Rest:
@@ -207,12 +236,16 @@ def _spread_out(rows: Rows, noise: Rows) -> float:
 
 
 def _announced(listed: ShortList) -> tuple[Evidence, ...]:
-    """The best effects, where they are better than "none of these" and take away a fair share of what is missing."""
+    """The best effects, where they are better than "none of these" and take away a fair share of what is missing.
+
+    What fits as well as a point that was logged wrongly comes before it: the other points must bear it out alone.
+    """
     found = [one for one in listed.evidence if one.announceable]
     if not found or found[0].beside >= listed.none_beside:
         return ()
     alike = indistinguishable(found)
-    return alike if alike[0].share >= PARTLY else ()
+    ordered = tuple(sorted(alike, key=lambda one: one.misplaced))
+    return ordered if ordered[0].share >= PARTLY else ()
 
 
 def _rest(name: str, found: Fit, seed: int) -> Rest:

@@ -6,6 +6,7 @@ from scipy.signal import cont2discrete, lfilter
 
 from identification.comparison.gather import gather
 from identification.diagnosis.diagnose import diagnose
+from identification.diagnosis.record_by_record import record_by_record
 from identification.diagnosis.variances import variations
 from identification.effects.library import library, variance_library
 from identification.extension.fit import fit
@@ -42,6 +43,38 @@ def test_a_stiffness_that_is_another_in_every_record_is_no_misplaced_point():
         assert 0.01 < found.variation.size < 0.04
         assert (found.verdict, found.announced) == ("explained", ())
         assert "log with every experiment" in found.reason
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_stiffness_that_varies_too_much_for_a_first_order_is_neither(seed):
+    found = diagnose(MODEL, made(seed, random_stiffness(0.12), sigma=1e-3), seed=seed)
+    assert (found.verdict, found.announced) == ("explained", ())
+    assert (found.variation.effect.kind, found.variation.effect.coefficient) == ("record_variation", 1)
+    assert 0.05 < found.variation.size < 0.25
+
+
+def test_each_record_alone_gives_the_scatter_of_its_own_stiffness():
+    g = np.random.default_rng(8)
+    off = 0.1 * g.standard_normal(len(TWICE))
+    records_alone = record_by_record(fit(MODEL, Rows(made(8, lambda _: off, sigma=1e-3)), iterations=40))
+    stiffness = np.array([(30 + 10 * p) * (1 + o) for p, o in zip(TWICE, off, strict=True)])
+    assert np.std(records_alone.coefficients[:, 1] / stiffness) < 2e-3 * np.mean(
+        records_alone.coefficients[:, 1] / stiffness
+    )
+    sizes = [records_alone.scattered(i) for i in range(records_alone.coefficients.shape[1])]
+    assert np.argmin([cost + spread for _, cost, spread in sizes]) == 1
+    assert sizes[1][0] == pytest.approx(np.std(off), rel=0.5)
+
+
+def test_three_points_cannot_tell_a_misplaced_one_from_a_bend_and_the_bend_comes_first():
+    three = (POINTS[0], POINTS[len(POINTS) // 2], POINTS[-1])
+    g = np.random.default_rng(9)
+    outputs = [(a, linear(p + 0.4 * (p == three[1]), a)) for p, a in ((p, phasors(g)) for p in three)]
+    found = diagnose(MODEL, gather(records(outputs, g, 1e-3, points=three)))
+    kinds = [one.score.candidate.effect.kind for one in found.announced]
+    assert "misplaced_point" in kinds
+    assert kinds[0] != "misplaced_point"
+    assert not found.confident
 
 
 def test_a_misplaced_point_and_a_delay_are_no_variation_from_record_to_record():
