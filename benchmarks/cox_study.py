@@ -23,15 +23,17 @@ from time import process_time
 
 import numpy as np
 
+from benchmarks.affine_plant import AffinePlant, with_constant
 from benchmarks.command import command_line, print_table, write_json
 from benchmarks.cox_counting import countings
 from benchmarks.processes import spread
-from identification.scheduling import with_constant
-from identification.varying.affine_state_space import Matrices, best_fit_rate, simulate_matrices, variance_accounted_for
+from identification.models.state_space import Matrices
 from identification.varying.correlation_analysis import CorrelatedSubMarkov, WhiteExcitation
 from identification.varying.correlation_realisation import CorrelationRealisation
 from identification.varying.ho_kalman import full_realisation, largest_entries, reduced_realisation
+from identification.varying.rates import best_fit_rate, variance_accounted_for
 from identification.varying.records import VaryingRecord
+from identification.varying.stacks import simulated
 from identification.varying.sub_markov import BasisSelection, every_word
 from tests.support.random_state_space import random_affine, slow_record, white_record
 
@@ -112,8 +114,7 @@ def _chosen_and_reduced(record: VaryingRecord, words: BasisSelection) -> Matrice
 
 
 def _estimated(method: CorrelationRealisation, record: VaryingRecord) -> Matrices:
-    model = method.estimate(record, ORDER).model
-    return model.a, model.b, model.c, model.d
+    return AffinePlant.of(method.estimate(record, ORDER).model).matrices
 
 
 def _timed(realise: Callable[[], Matrices], repeats: int) -> tuple[float, Matrices]:
@@ -128,10 +129,10 @@ def _timed(realise: Callable[[], Matrices], repeats: int) -> tuple[float, Matric
 
 
 def _quality(matrices: Matrices, held_out: VaryingRecord) -> tuple[float, float]:
-    simulated = simulate_matrices(matrices, held_out.input, held_out.scheduling)
-    if not np.all(np.isfinite(simulated)):
+    output = simulated(matrices, held_out.input, with_constant(held_out.scheduling))[1]
+    if not np.all(np.isfinite(output)):
         return 0.0, 0.0
-    return best_fit_rate(held_out.output, simulated), variance_accounted_for(held_out.output, simulated)
+    return best_fit_rate(held_out.output, output), variance_accounted_for(held_out.output, output)
 
 
 def summary(runs: list[Run]) -> list[dict[str, float | str | None]]:

@@ -17,14 +17,15 @@ from functools import partial
 import numpy as np
 from scipy.linalg import lu_factor, lu_solve
 
+from benchmarks.affine_plant import with_constant
 from benchmarks.command import command_line, print_table, timed, write_json
 from benchmarks.wind_turbine_plant import PLANT, SIZES, THETA, disturbed, noise_free
 from identification.arrays import ComplexArray, FloatArray
-from identification.varying.affine_parameters import AffineSizes
 from identification.varying.harmonic_blocks import HarmonicBlocks
 from identification.varying.harmonic_noise import HarmonicNoise
 from identification.varying.periodic_residuals import PeriodicResiduals
 from identification.varying.records import steady_periods
+from identification.varying.stacks import StackSizes
 
 Response = Callable[[FloatArray], tuple[ComplexArray, ComplexArray]]
 
@@ -97,8 +98,9 @@ def agreement(blocks: HarmonicBlocks, dense: Dense, theta: FloatArray) -> float:
 def wind_turbine(repeats: int, dense_repeats: int) -> dict[str, float]:
     """Iterations of the paper's example, in blocks and dense."""
     record = disturbed(noise_free("multisine"), 0.06, False, np.random.default_rng(1))
-    preparation = timed(lambda: PeriodicResiduals.of(steady_periods(record, 1), PLANT.order))
-    residuals = PeriodicResiduals.of(steady_periods(record, 1), PLANT.order)
+    steady = steady_periods(record, 1)
+    preparation = timed(lambda: PeriodicResiduals.of(steady, with_constant(steady.scheduling), PLANT.order))
+    residuals = PeriodicResiduals.of(steady, with_constant(steady.scheduling), PLANT.order)
     chart = SIZES.chart(THETA)
     result = {
         "preparation (periods, noise) in ms": 1e3 * preparation,
@@ -121,15 +123,15 @@ def wind_turbine(repeats: int, dense_repeats: int) -> dict[str, float]:
     return result
 
 
-def random_residuals(sizes: AffineSizes, period: int, scheduling_period: int) -> tuple[PeriodicResiduals, FloatArray]:
+def random_residuals(sizes: StackSizes, period: int, scheduling_period: int) -> tuple[PeriodicResiduals, FloatArray]:
     """A random stable model with its residuals, noise of variance one."""
     generator = np.random.default_rng(1)
     theta = np.concatenate([generator.standard_normal(int(np.prod(shape))) for shape in sizes.shapes])
     end = int(np.prod(sizes.shapes[0]))
-    theta[:end] *= 0.5 / (1 + sizes.n_scheduling) / np.sqrt(sizes.order)
+    theta[:end] *= 0.5 / (1 + (sizes.functions - 1)) / np.sqrt(sizes.order)
     u = generator.standard_normal((period, sizes.n_inputs))
-    p = np.tile(generator.uniform(-1, 1, (scheduling_period, sizes.n_scheduling)), (period // scheduling_period, 1))
-    blocks = HarmonicBlocks(sizes, u, p, scheduling_period)
+    p = np.tile(generator.uniform(-1, 1, (scheduling_period, (sizes.functions - 1))), (period // scheduling_period, 1))
+    blocks = HarmonicBlocks(sizes, u, with_constant(p), scheduling_period)
     measured = np.zeros((len(blocks.lines), sizes.n_outputs), dtype=complex)
     noise = HarmonicNoise(np.tile(np.eye(sizes.n_outputs, dtype=complex), (period, 1, 1)), 98)
     return PeriodicResiduals(blocks, measured, noise, np.ones(len(blocks.lines), dtype=bool)), theta
@@ -148,7 +150,7 @@ def growth(repeats: int) -> list[dict[str, float]]:
     rows.append({"P": 20_000, "T": 20_000, "n_x": 4, "n_p": 2})
     table = []
     for row in rows:
-        sizes = AffineSizes(row["n_x"], row["n_p"], 1, 1)
+        sizes = StackSizes(row["n_x"], 1 + row["n_p"], 1, 1)
         residuals, theta = random_residuals(sizes, row["P"], row["T"])
         chart = sizes.chart(theta)
         seconds = median_seconds(partial(iteration, residuals, theta, chart), repeats)

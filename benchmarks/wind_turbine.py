@@ -35,8 +35,8 @@ from benchmarks.wind_turbine_plant import (
     validation_fits,
 )
 from identification.arrays import ComplexArray, FloatArray
-from identification.outcome import Outcome
-from identification.varying.affine_estimate import AffineEstimate
+from identification.models.model import Model
+from identification.varying.eigenvalues import eigenvalue_covariance, eigenvalues
 from identification.varying.periodic_likelihood import PeriodicLikelihood
 from identification.varying.periodic_moesp import PeriodicMoesp
 
@@ -59,15 +59,15 @@ class Runs:
     converged: int
 
 
-def three_eigenvalues(estimate: AffineEstimate) -> tuple[ComplexArray, FloatArray]:
+def three_eigenvalues(model: Model) -> tuple[ComplexArray, FloatArray]:
     """The upper one of A_0 and both of A_1 by their real parts, (3,), with their covariances (3, 2, 2)."""
-    values = estimate.model.eigenvalues()
+    values = eigenvalues(model)
     order = np.argsort(values[1].real)
     upper = int(np.argmax(values[0].imag))
     kept = np.concatenate([values[0, [upper]], values[1, order]])
-    if estimate.covariance is None:
+    if model.covariance is None:
         return kept, np.full((3, 2, 2), np.nan)
-    covariance = estimate.eigenvalue_covariance()
+    covariance = eigenvalue_covariance(model)
     return kept, np.concatenate([covariance[0, [upper]], covariance[1, order]])
 
 
@@ -82,7 +82,7 @@ def batch(method: str, noise: float, window: int, count: int, seed: np.random.Se
             estimates.append(PeriodicMoesp(window=window, varying_output=False).estimate(record, PLANT.order))
         else:
             estimates.append(PeriodicLikelihood(drop_periods=1).estimate(record, PLANT.order))
-    eigenvalues, stated = zip(*(three_eigenvalues(estimate) for estimate in estimates), strict=True)
+    eigenvalues, stated = zip(*(three_eigenvalues(estimate.model) for estimate in estimates), strict=True)
     models = [estimate.model for estimate in estimates]
     return Runs(
         np.array([aligned(model) for model in models]),
@@ -107,7 +107,7 @@ FIELDS = ("theta", "eigenvalues", "stated", "fits")
 def bound(method: str, noise: float) -> tuple[FloatArray, FloatArray, FloatArray]:
     """P_θ and its chart at the truth, and the covariances of the three eigenvalues."""
     covariance, chart = cramer_rao(noise, method == "coloured")
-    _, ellipses = three_eigenvalues(AffineEstimate(PLANT, Outcome("converged"), (), covariance))
+    _, ellipses = three_eigenvalues(PLANT.model(covariance))
     return covariance, chart, ellipses
 
 
@@ -158,7 +158,7 @@ def efficiency(errors: FloatArray, covariance: FloatArray) -> dict[str, object]:
 
 def coverage(runs: Runs, ellipses: FloatArray) -> dict[str, object]:
     """Shares of runs inside the bound's 95 % ellipses and inside those the runs state, and whether all may be 95 %."""
-    truth, _ = three_eigenvalues(AffineEstimate(PLANT, Outcome("converged"), ()))
+    truth, _ = three_eigenvalues(PLANT.model())
     interval = binom.ppf([0.005, 0.995], len(runs.fits), 0.95) / len(runs.fits)
     shares = [inside(runs.eigenvalues - truth, covariances) for covariances in (ellipses, runs.stated)]
     return {
@@ -191,7 +191,7 @@ def main() -> None:
     print_table([{"": name} | {str(each["case"]): each.get(name) for each in figures} for name in names])
     write_json(figures, options.output)
     if options.page:
-        truth, _ = three_eigenvalues(AffineEstimate(PLANT, Outcome("converged"), ()))
+        truth, _ = three_eigenvalues(PLANT.model())
         clouds = {
             NAMES[method]: Cloud(
                 runs.fits, runs.eigenvalues, bound("white" if method == "moesp" else method, options.noise)[2]

@@ -1,5 +1,6 @@
 """Parameter-varying models simulated along p(t), with the standard deviation of the output."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,6 +9,7 @@ from identification.arrays import FloatArray
 from identification.confidence import covariance_root
 from identification.errors import RangeError
 from identification.models.model import Model
+from identification.models.structure import Along
 
 UNSTABLE = "the simulated output grows beyond all numbers: the model is unstable along this scheduling"
 
@@ -36,8 +38,16 @@ def simulate_along(
         raise RangeError(UNSTABLE, "scheduling")
     if not covariance_known:
         return Simulation(found.output, None)
-    variance = np.zeros_like(found.output)
+    variance = sum((dy**2 for dy in _changes(model, found, scheduling)), np.zeros_like(found.output))
+    return Simulation(found.output, np.sqrt(variance))
+
+
+def output_changes(model: Model, input: FloatArray, scheduling: FloatArray) -> Iterator[FloatArray]:
+    """S(t) v (N, n_y) for one direction v after the other, Σ v vᵀ = P; S as in `simulate_along`."""
+    return _changes(model, model.structure.along(model.coefficients(scheduling), input), scheduling)
+
+
+def _changes(model: Model, found: Along, scheduling: FloatArray) -> Iterator[FloatArray]:
     for direction in covariance_root(model.plant_covariance).T:
         moved = model.dependence.coefficients(model.direction(direction), scheduling)
-        variance += found.change(moved[:, : model.structure.n_plant]) ** 2
-    return Simulation(found.output, np.sqrt(variance))
+        yield found.change(moved[:, : model.structure.n_plant])

@@ -17,12 +17,23 @@ class LocalEstimate:
     fit_percent: float
 
 
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Found:
+    """What a method found beside the model; `warnings`: its assumptions that the data break."""
+
+    warnings: tuple[str, ...] = ()
+
+
 @dataclass(frozen=True, eq=False)
 class Estimate:
-    """A model with its outcome and tests; `local` estimates that it stands on, and what each was `fitted` to."""
+    """A model with its outcome and tests, and what its method `found` besides.
+
+    `local` estimates that it stands on, and what each was `fitted` to.
+    """
 
     model: Model
     outcome: Outcome
     tests: tuple[TestResult, ...]
     local: tuple[LocalEstimate, ...] = ()
     fitted: tuple[Measurement, ...] = ()
+    found: Found | None = None

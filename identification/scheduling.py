@@ -31,13 +31,6 @@ class SchedulingVariable:
             )
 
 
-def with_constant(scheduling: FloatArray) -> FloatArray:
-    """1 and p(t) along p (N, n_p): the weights (N, 1 + n_p) of affine matrices, stored signal by signal."""
-    signals = np.empty((scheduling.shape[1] + 1, len(scheduling)))
-    signals[0], signals[1:] = 1.0, scheduling.T
-    return signals.T
-
-
 class OneVariableBasis(Protocol):
     """Functions of one scheduling variable: what the plug-ins of `identification.bases` are."""
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from app.arrays import finite_list_or_none
 from app.conversion.models import kept_model
-from app.conversion.varying_models import kept_estimate, kept_joint_covariance
+from app.conversion.varying_models import kept_varying
 from app.schemas.effects import EffectParameter, PlacedEffectDocument
 from app.schemas.models import Model as ModelDocument
 from app.schemas.plants import Plant
@@ -16,9 +16,9 @@ from identification.arrays import FloatArray
 from identification.effects.library import library
 from identification.effects.second_variable import SecondVariable
 from identification.models.model import Model
+from identification.models.state_space_model import carrying
 from identification.places.place import Effect
 from identification.places.placed import PlacedEffect
-from identification.varying.frozen import frozen
 
 
 def effect_of(kind: str) -> Effect | None:
@@ -35,11 +35,10 @@ def chosen_effects(kinds: Sequence[str] | None, domain: str | None) -> tuple[Eff
 
 def extended_model(model: ModelDocument, plant: Plant) -> Model:
     """The model of a document with the effects that it carries; raises MisuseError where there is no such form."""
-    if model.varying is not None:
-        joint = kept_joint_covariance(model, plant)
-        return frozen(kept_estimate(model, plant), tuple(map(placed_effect, model.effects)), joint)
     covariance = None if model.joint_covariance is None else np.array(model.joint_covariance)
     effects = tuple(map(placed_effect, model.effects))
+    if model.varying is not None:
+        return carrying(kept_varying(model, plant), effects, covariance)
     return dataclasses.replace(kept_model(model, plant), effects=effects, joint_covariance=covariance)
 
 

@@ -1,15 +1,17 @@
 """Extended models to documents."""
 
+import dataclasses
 from typing import Any
 
 from app.arrays import finite_list_or_none
 from app.conversion.effects import effect_documents
 from app.conversion.models import accuracy_documents, range_documents
-from app.conversion.varying_models import eigenvalue_documents, joint_document, model_parts, state_space_part
+from app.conversion.varying_models import eigenvalue_documents, model_parts, state_space_part
 from app.schemas.models import Model as ModelDocument
 from identification.extension.response import coefficients
 from identification.models.model import Model
-from identification.varying.frozen import affine_estimate
+from identification.models.state_space_model import joint_of_entries
+from identification.outcome import Outcome
 
 
 def joint_names(model: Model) -> list[str]:
@@ -28,18 +30,20 @@ def effect_names(model: Model) -> list[str]:
 
 def extended_affine_documents(model: Model, parent: ModelDocument) -> dict[str, Any]:
     """The same of a model from varying scheduling; fits along p(t) are not those of a model with effects."""
-    estimate, joint = affine_estimate(model)
-    parts = model_parts(estimate)
+    joint = joint_of_entries(model)
+    size = len(model.theta)
+    grown = dataclasses.replace(model, covariance=None if joint is None else joint[:size, :size])
+    parts = model_parts(grown, Outcome("converged"))
     assert parent.varying is not None, "a version of a model from varying scheduling"
     update: dict[str, Any] = {"steady": None, "fits": [], "warnings": [], "starting_outcome": ""}
-    varying = parent.varying.model_copy(update={**update, "eigenvalues": eigenvalue_documents(estimate)})
+    varying = parent.varying.model_copy(update={**update, "eigenvalues": eigenvalue_documents(grown)})
     return {
         **{name: value for name, value in parts.items() if name not in ("outcome", "tests")},
-        "stateSpace": state_space_part(estimate.model),
+        "stateSpace": state_space_part(grown),
         "varying": varying.as_json(),
         "effects": [one.as_json() for one in effect_documents(model)],
         "jointParameterNames": [*parts["parameterNames"], *effect_names(model)],
-        "jointCovariance": joint_document(estimate.model, joint),
+        "jointCovariance": None if joint is None else finite_list_or_none(joint),
     }
 
 

@@ -8,7 +8,7 @@ from app.arrays import finite_or_none
 from app.conversion.models import kept_model
 from app.conversion.plants import is_state_space, scheduling_variables
 from app.conversion.state_space import kept_state_space
-from app.conversion.varying_models import kept_estimate
+from app.conversion.varying_models import kept_varying
 from app.schemas.experiments import SchedulingRange
 from app.schemas.models import Model
 from app.schemas.plants import ContinuousTimeStructure, Plant
@@ -17,7 +17,6 @@ from identification.along import Simulation, simulate_along
 from identification.arrays import FloatArray
 from identification.errors import MisuseError
 from identification.extension.steady_period import LeftOut
-from identification.varying.frozen import affine_model
 
 FROZEN = (
     "The model was identified at operating points that were held still; its coefficients follow p(t) at once, and what"
@@ -35,7 +34,7 @@ def simulated(model: Model, plant: Plant, u: FloatArray, p: FloatArray) -> tuple
     """The simulation, and what it leaves out; raises MisuseError."""
     unknown = [] if model.covariance is not None else [NO_BAND]
     if model.varying is not None:
-        return simulate_along(affine_model(kept_estimate(model, plant)), u, p, model.covariance is not None), unknown
+        return simulate_along(kept_varying(model, plant), u, p, model.covariance is not None), unknown
     if is_state_space(model.structure):
         frozen = kept_state_space(model, plant)
         if frozen is None:

@@ -1,4 +1,4 @@
-"""Affine state-space models: documents to models and back."""
+"""State-space models from varying scheduling: documents to models and back."""
 
 from typing import Any
 
@@ -7,9 +7,9 @@ import numpy as np
 from app.arrays import ComplexVector, finite_list_or_none
 from app.conversion.extremes import finite
 from app.conversion.models import outcome_document, standard_deviations, test_documents
-from app.conversion.plants import MATRIX_NAMES, scheduling_variables
+from app.conversion.plants import MATRIX_NAMES
 from app.conversion.state_space import entry_names, kept_state_space, matrices_document, range_poles
-from app.schemas.models import Model
+from app.schemas.models import Model as ModelDocument
 from app.schemas.plants import (
     DiscreteStateSpaceStructure,
     Plant,
@@ -18,14 +18,13 @@ from app.schemas.plants import (
 )
 from app.schemas.state_space import StateSpaceResult
 from app.schemas.varying import EigenvaluesDocument, VaryingModelRequest
-from identification.arrays import FloatArray, IntArray
+from identification.arrays import FloatArray
+from identification.bases.polynomial import Polynomial
 from identification.errors import MisuseError
-from identification.outcome import Outcome
+from identification.models.model import Model
+from identification.outcome import Outcome, TestResult
 from identification.parametric.pole_guarantee import fine_grid
-from identification.varying.affine_estimate import AffineEstimate
-from identification.varying.affine_parameters import AffineSizes
-from identification.varying.affine_state_space import AffineStateSpace
-from identification.varying.frozen import affine_model
+from identification.varying.eigenvalues import eigenvalue_covariance, eigenvalues
 
 
 def requested_structure(plant: Plant, request: VaryingModelRequest) -> DiscreteStateSpaceStructure:
@@ -46,36 +45,35 @@ def affine_basis(variables: int) -> ProductBasisDocument:
     return ProductBasisDocument.model_validate({"factors": factors, "totalDegree": 1})
 
 
-def model_parts(estimate: AffineEstimate) -> dict[str, Any]:
+def model_parts(model: Model, outcome: Outcome, tests: tuple[TestResult, ...] = ()) -> dict[str, Any]:
     """θ, its accuracy, outcome, tests and poles, as in every model document."""
-    frozen = affine_model(estimate)
-    theta = finite(frozen.theta, "matrices")
-    covariance = None if estimate.covariance is None else finite(frozen.theta_covariance, "covariances")
+    theta = finite(model.theta, "matrices")
+    covariance = None if model.covariance is None else finite(model.theta_covariance, "covariances")
     return {
         "coefficientNames": list(MATRIX_NAMES),
-        "parameterNames": entry_names(frozen),
+        "parameterNames": entry_names(model),
         "theta": theta.tolist(),
         "covariance": None if covariance is None else finite_list_or_none(covariance),
         "standardDeviations": None if covariance is None else standard_deviations(covariance),
         "noiseVariance": None,
-        "outcome": outcome_document(estimate.outcome).as_json(),
-        "tests": [test.as_json() for test in test_documents(estimate.tests)],
-        "stable": bool(np.all(frozen.stable(fine_grid(frozen.variables)))),
-        "poles": [poles.as_json() for poles in range_poles(frozen)],
+        "outcome": outcome_document(outcome).as_json(),
+        "tests": [test.as_json() for test in test_documents(tests)],
+        "stable": bool(np.all(model.stable(fine_grid(model.variables)))),
+        "poles": [poles.as_json() for poles in range_poles(model)],
     }
 
 
-def state_space_part(model: AffineStateSpace) -> dict[str, Any]:
+def state_space_part(model: Model) -> dict[str, Any]:
     """What every state-space model says of itself."""
     return StateSpaceResult(
         subspace_estimator=None,
         parametric_estimator=None,
         refinement=None,
-        order=model.order,
-        sample_time_seconds=model.sample_time,
-        input_count=model.n_inputs,
-        output_count=model.n_outputs,
-        matrices=matrices_document(affine_model(AffineEstimate(model, Outcome("converged"), ()))),
+        order=model.structure.order,
+        sample_time_seconds=model.structure.sample_time,
+        input_count=model.structure.inputs,
+        output_count=model.structure.outputs,
+        matrices=matrices_document(model),
         errors=[],
         singular_values=[],
         chosen_rows=None,
@@ -84,46 +82,18 @@ def state_space_part(model: AffineStateSpace) -> dict[str, Any]:
     ).as_json()
 
 
-def kept_estimate(model: Model, plant: Plant) -> AffineEstimate:
-    """The affine model of a document with its covariance; only for models from varying scheduling."""
-    frozen = kept_state_space(model, plant)
-    assert frozen is not None, "models from varying scheduling have matrices"
-    sizes = AffineSizes.like(frozen)
-    back = np.argsort(sizes.in_products)
-    affine = sizes.model(frozen.theta[back], frozen.structure.sample_time or 0.0, scheduling_variables(plant))
-    covariance = None if model.covariance is None else frozen.theta_covariance[np.ix_(back, back)]
-    return AffineEstimate(affine, Outcome(model.outcome.status, model.outcome.advice), (), covariance)
+def kept_varying(document: ModelDocument, plant: Plant) -> Model:
+    """The model of a document with its covariance; only for models from varying scheduling."""
+    model = kept_state_space(document, plant)
+    assert model is not None, "models from varying scheduling have matrices"
+    return model
 
 
-def kept_joint_covariance(model: Model, plant: Plant) -> FloatArray | None:
-    """The joint covariance of θ and the effects of a document, θ in the order of `AffineSizes`."""
-    if model.joint_covariance is None:
-        return None
-    joint = np.array(model.joint_covariance)
-    places = _joint_places(kept_estimate(model, plant).model, len(joint))
-    return np.asarray(joint[np.ix_(np.argsort(places), np.argsort(places))])
-
-
-def joint_document(model: AffineStateSpace, joint: FloatArray | None) -> Any:
-    """The joint covariance of θ and the effects, θ in the order of documents."""
-    if joint is None:
-        return None
-    places = _joint_places(model, len(joint))
-    return finite_list_or_none(joint[np.ix_(places, places)])
-
-
-def _joint_places(model: AffineStateSpace, size: int) -> IntArray:
-    places = AffineSizes.of(model).in_products
-    return np.concatenate([places, np.arange(len(places), size)])
-
-
-def eigenvalue_documents(estimate: AffineEstimate) -> list[EigenvaluesDocument]:
-    """The eigenvalues of each A_i; multiple ones have no covariance."""
-    values = finite(estimate.model.eigenvalues(), "eigenvalues")
+def eigenvalue_documents(model: Model) -> list[EigenvaluesDocument]:
+    """The eigenvalues of each A_j; multiple ones have no covariance."""
+    values = finite(eigenvalues(model), "eigenvalues")
     shape = (*values.shape, 2, 2)
-    known = estimate.covariance is not None
-    covariance = estimate.eigenvalue_covariance() if known else np.full(shape, np.inf)
-    names = ["1", *(variable.name for variable in estimate.model.variables)]
+    covariance = np.full(shape, np.inf) if model.covariance is None else eigenvalue_covariance(model)
     return [
         EigenvaluesDocument(
             function=name,
@@ -132,14 +102,29 @@ def eigenvalue_documents(estimate: AffineEstimate) -> list[EigenvaluesDocument]:
             imaginary_variances=_known(covariance[i, :, 1, 1]),
             real_imaginary_covariances=_known(covariance[i, :, 0, 1]),
         )
-        for i, name in enumerate(names)
+        for i, name in enumerate(function_names(model))
     ]
+
+
+def function_names(model: Model) -> list[str]:
+    """What each A_j is multiplied by: products of powers by their names, other functions by their indices."""
+    basis, names = model.dependence.bases[0], [variable.name for variable in model.variables]
+    if not all(isinstance(factor, Polynomial) for factor in basis.factors):
+        return [f"[{label}]" for label in basis.labels]
+    return [_product(names, label.split(",")) for label in basis.labels]
+
+
+def _product(names: list[str], powers: list[str]) -> str:
+    parts = [
+        name if power == "1" else f"{name}^{power}" for name, power in zip(names, powers, strict=True) if power != "0"
+    ]
+    return " ".join(parts) or "1"
 
 
 def _known(values: FloatArray) -> list[float | None]:
     return [float(value) if np.isfinite(value) else None for value in values]
 
 
-def structure_document(asked: StateSpaceStructureDocument, model: AffineStateSpace) -> dict[str, Any]:
+def structure_document(asked: StateSpaceStructureDocument, model: Model) -> dict[str, Any]:
     """The structure with the order that the model has."""
-    return {**asked.as_json(), "order": model.order}
+    return {**asked.as_json(), "order": model.structure.order}

@@ -6,11 +6,12 @@ from typing import Any, Literal
 import numpy as np
 
 from app.schemas.varying import NoiseSpectrumDocument, SteadyPeriodsDocument, VaryingFit
+from identification.along import simulate_along
 from identification.errors import MisuseError
-from identification.varying.affine_estimate import AffineEstimate
+from identification.models.model import Model
 from identification.varying.noise_spectrum import NoiseSpectrum, noise_between_harmonics, noise_of_errors
 from identification.varying.records import TOLERANCE, SteadyPeriods, VaryingRecord, steady_periods
-from identification.varying.reproduction import output_deviations, reproduced
+from identification.varying.reproduction import reproduced
 
 
 def used_periods(record: VaryingRecord, estimators: Sequence[Any]) -> SteadyPeriods | None:
@@ -37,12 +38,13 @@ def steady_document(steady: SteadyPeriods) -> SteadyPeriodsDocument:
 
 
 def fit_document(
-    estimate: AffineEstimate, record: VaryingRecord, experiment_id: str, data: Literal["fitted", "heldOut"]
+    model: Model, record: VaryingRecord, experiment_id: str, data: Literal["fitted", "heldOut"]
 ) -> VaryingFit:
     """How well the model reproduces a record, or why it cannot be told."""
     try:
-        found = reproduced(estimate.model, record)
-        deviations = None if estimate.covariance is None else output_deviations(estimate, record)
+        found = reproduced(model, record)
+        known = model.covariance is not None
+        deviations = simulate_along(model, record.input, record.scheduling, known).deviation
     except MisuseError as error:
         return VaryingFit(
             experiment_id=experiment_id,
@@ -61,15 +63,13 @@ def fit_document(
     )
 
 
-def noise_document(
-    estimate: AffineEstimate, record: VaryingRecord, steady: SteadyPeriods | None
-) -> NoiseSpectrumDocument | None:
+def noise_document(model: Model, record: VaryingRecord, steady: SteadyPeriods | None) -> NoiseSpectrumDocument | None:
     """From the lines between the harmonics where there are enough, else from the residuals of the model."""
     source: Literal["betweenHarmonics", "residuals"] = "betweenHarmonics"
     try:
         if steady is None:
             source = "residuals"
-            errors = record.output - reproduced(estimate.model, record).output
+            errors = record.output - reproduced(model, record).output
             found = noise_of_errors(errors, record.sample_time)
         else:
             found = noise_between_harmonics(steady, record.sample_time)

@@ -18,7 +18,7 @@ from app.services.fitting import check_sample_time
 from app.services.jobs import fingerprint
 from app.services.models import KIND
 from app.services.plants import plant_of
-from identification.varying.affine_parameters import AffineSizes
+from identification.varying.stacks import StackSizes
 
 TASK = "varying_identification"
 MOST_ENTRIES = 500
@@ -46,7 +46,7 @@ def payload(plant: Plant, request: VaryingModelRequest, fitted: Given, held_out:
     with pointing({}, default="/structure"):
         structure = requested_structure(plant, request)
     (n_y, n_u), n_p = channels(plant), len(plant.scheduling_variables)
-    size = AffineSizes(structure.order or 1, n_p, n_u, n_y).size
+    size = StackSizes(structure.order or 1, 1 + n_p, n_u, n_y).size
     if size > MOST_ENTRIES:
         raise UnprocessableError.at(
             "/structure",

@@ -5,13 +5,16 @@ from dataclasses import replace
 from typing import cast
 
 import numpy as np
+from scipy.linalg import block_diag
 
 from identification.arrays import FloatArray, finite_floats
-from identification.errors import ShapeError
+from identification.errors import MisuseError, ShapeError
 from identification.models.chart import gauge_tangent, perpendicular
 from identification.models.model import Model
 from identification.models.state_space import Matrices, StateSpaceStructure
 from identification.models.system import require_matching
+from identification.places.linear import Coefficient
+from identification.places.placed import PlacedEffect
 from identification.scheduling import ProductBasis, SchedulingVariable
 
 
@@ -38,9 +41,51 @@ def state_space_model(
     return model if covariance is None else charted(model)
 
 
+def functions_along(model: Model, scheduling: FloatArray) -> FloatArray:
+    """ψ (N, k) along p (N, s) of a model whose matrices are all over the same functions, stored signal by signal."""
+    basis = model.dependence.bases[0]
+    return np.asfortranarray(basis.evaluate(model.dependence.points(scheduling), model.variables))
+
+
 def charted(model: Model) -> Model:
     """The model, moving only in directions that a response shows."""
     return replace(model, chart=perpendicular(gauge_tangent(model.structure, model.dependence, model.theta)))
+
+
+def carrying(model: Model, effects: tuple[PlacedEffect, ...], joint: FloatArray | None) -> Model:
+    """The model with effects in it; `joint`: the covariance of θ and their parameters, as `joint_of_entries` gives.
+
+    Raises MisuseError for several inputs or outputs, or for effects on coefficients, which mean something else in every
+    state basis.
+    """
+    shape = model.structure.inputs, model.structure.outputs
+    if shape != (1, 1):
+        raise MisuseError(
+            f"the model has {shape[0]} inputs and {shape[1]} outputs; only models with one of each are held against"
+            " experiments at operating points that are held still",
+            "model",
+        )
+    if any(isinstance(one.effect, Coefficient) for one in effects):
+        raise MisuseError("effects on the coefficients of a state-space model depend on its state basis", "effects")
+    found = charted(model)
+    if not effects:
+        return found
+    assert found.chart is not None, "state spaces have one"
+    both = None if joint is None else _on_both_sides(found.chart.T, joint)
+    return replace(found, effects=effects, joint_covariance=both)
+
+
+def joint_of_entries(model: Model) -> FloatArray | None:
+    """The covariance of θ and the parameters of the effects together, which were estimated along the chart."""
+    if model.joint_covariance is None or model.chart is None:
+        return model.joint_covariance
+    return _on_both_sides(model.chart, model.joint_covariance)
+
+
+def _on_both_sides(matrix: FloatArray, joint: FloatArray) -> FloatArray:
+    """diag(M, I) P diag(M, I)ᵀ."""
+    whole = block_diag(matrix, np.eye(len(joint) - matrix.shape[1]))
+    return np.asarray(whole @ joint @ whole.T)
 
 
 def _checked(matrices: Matrices, bases: Sequence[ProductBasis]) -> Matrices:

@@ -1,17 +1,18 @@
-"""An affine model held against a record along varying scheduling: residuals over time and frequency, and tests."""
+"""A model held against a record along varying scheduling: residuals over time and frequency, and tests."""
 
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
+from identification.along import output_changes
 from identification.arrays import BoolArray, ComplexArray, FloatArray
 from identification.comparison.lack_of_fit import lack_of_fit
 from identification.errors import MisuseError
 from identification.lti.whiteness import chi_square, orthonormal
+from identification.models.model import Model
+from identification.models.state_space_model import functions_along
 from identification.outcome import TestResult
-from identification.varying.affine_estimate import AffineEstimate
-from identification.varying.affine_parameters import AffineSizes
 from identification.varying.correlation_assumptions import noise_tests
 from identification.varying.harmonic_noise import LEAST_LINES
 from identification.varying.periodic_residuals import PeriodicResiduals
@@ -48,7 +49,7 @@ class VaryingComparison:
 
 
 def compare_varying(
-    estimate: AffineEstimate,
+    model: Model,
     record: VaryingRecord,
     fitted: bool,
     noise_covariance: FloatArray | None = None,
@@ -62,15 +63,15 @@ def compare_varying(
     residuals of other records. Raises MisuseError for a record of other channels, a model that is unstable along it, or
     a held-out record and a model without covariance.
     """
-    found = reproduced(estimate.model, record)
+    found = reproduced(model, record)
     errors = record.output - found.output
     try:
-        lines = _Lines.of(estimate, record, fitted, drop_periods, tolerance)
+        lines = _Lines.of(model, record, fitted, drop_periods, tolerance)
     except _NotPeriodicError:
         lines = None
     fit = found.best_fit_rate, found.variance_accounted_for
     if lines is None:
-        tests = (*noise_tests(errors), *_independence(estimate, record, errors, fitted))
+        tests = (*noise_tests(errors), *_independence(model, record, errors, fitted))
         omega, residual, scale = _periodogram(errors, record.sample_time, noise_covariance)
         known = noise_covariance is not None
         return VaryingComparison(*fit, known, None, (), np.zeros(0), tests, omega, residual, errors / scale)
@@ -99,29 +100,25 @@ class _Lines:
     sample_time: float
 
     @classmethod
-    def of(
-        cls, estimate: AffineEstimate, record: VaryingRecord, fitted: bool, drop: int | None, tolerance: float
-    ) -> "_Lines":
+    def of(cls, model: Model, record: VaryingRecord, fitted: bool, drop: int | None, tolerance: float) -> "_Lines":
         try:
             steady = steady_periods(record, drop, tolerance)
-            residuals = PeriodicResiduals.of(steady, estimate.model.order)
+            phi = functions_along(model, steady.scheduling)
+            residuals = PeriodicResiduals.of(steady, phi, model.structure.order)
         except MisuseError as error:
             raise _NotPeriodicError from error
-        model, sizes = estimate.model, AffineSizes.of(estimate.model)
-        theta = sizes.join((model.a, model.b, model.c, model.d))
-        if not residuals.blocks.stable(theta):
+        if not residuals.blocks.stable(model.theta):
             raise MisuseError("the model is unstable along this scheduling", "model")
-        r, jacobian = residuals(theta)
-        scale = _shrinkage(residuals)
-        r, jacobian = scale * r, scale[:, None] * (jacobian @ sizes.chart(theta))
-        if not fitted and estimate.covariance is None:
+        r, jacobian = residuals(model.theta)
+        scale, chart = _shrinkage(residuals), residuals.blocks.sizes.chart(model.theta)
+        r, jacobian = scale * r, scale[:, None] * (jacobian @ chart)
+        if not fitted and model.covariance is None:
             raise MisuseError(
                 "the model has no covariance, so that nobody can say how far it may be from data that it was not fitted"
                 " to; refine it by maximum likelihood",
                 "model",
             )
-        chart = sizes.chart(theta)
-        covariance = None if estimate.covariance is None or fitted else chart.T @ estimate.covariance @ chart
+        covariance = None if fitted else chart.T @ model.theta_covariance @ chart
         leverage = np.sum(orthonormal(jacobian) ** 2, axis=1) if fitted else np.zeros(len(r))
         period, periods = steady.periodicity.period, len(steady.output)
         spans = -(-LEAST_LINES * steady.output.shape[2] // (periods - 1))
@@ -219,22 +216,20 @@ def _periodogram(
     return np.asarray(omega, dtype=np.float64), np.asarray(spectrum / scale), scale
 
 
-def _independence(
-    estimate: AffineEstimate, record: VaryingRecord, errors: FloatArray, fitted: bool
-) -> tuple[TestResult, ...]:
-    """Whether white errors hold nothing of p_i(t − l) u(t − l), l = 0 … K; nothing without covariance of the model.
+def _independence(model: Model, record: VaryingRecord, errors: FloatArray, fitted: bool) -> tuple[TestResult, ...]:
+    """Whether white errors hold nothing of ψ_i(t − l) u(t − l), l = 0 … K; nothing without covariance of the model.
 
         z = Πᵀ e Σ_e^{−½},   zᵀ M⁻¹ z ~ χ²(rank M),   M = I − G Gᵀ where fitted, I + T Tᵀ where held out
 
     Π an orthonormal basis of these products; T what the model's uncertainty adds to z; G what the fit takes away.
     """
     covariance = errors.T @ errors / len(errors)
-    if estimate.covariance is None or not np.all(np.linalg.eigvalsh(covariance) > 0):
+    if model.covariance is None or not np.all(np.linalg.eigvalsh(covariance) > 0):
         return ()
     whitener = np.linalg.inv(np.linalg.cholesky(covariance)).T
-    basis = orthonormal(_delayed_products(record))
+    basis = orthonormal(_delayed_products(record, functions_along(model, record.scheduling)))
     z = (basis.T @ errors @ whitener).ravel()
-    changes = np.stack([dy @ whitener for dy in estimate.output_changes(record.input, record.scheduling)])
+    changes = np.stack([dy @ whitener for dy in output_changes(model, record.input, record.scheduling)])
     if fitted:
         changes = orthonormal(changes.reshape(len(changes), -1).T).T.reshape(-1, *errors.shape)
     tangents = np.stack([(basis.T @ one).ravel() for one in changes], axis=1)
@@ -245,10 +240,9 @@ def _independence(
     return (chi_square("independence of the errors from past input and scheduling", statistic, int(kept.sum())),)
 
 
-def _delayed_products(record: VaryingRecord) -> FloatArray:
-    """p_i(t − l) u(t − l) for as many lags as the record has room for, (N, columns)."""
+def _delayed_products(record: VaryingRecord, psi: FloatArray) -> FloatArray:
+    """ψ_i(t − l) u(t − l) for as many lags as the record has room for, (N, columns)."""
     count = len(record)
-    psi = np.concatenate([np.ones((count, 1)), record.scheduling], axis=1)
     products = (psi[:, :, None] * record.input[:, None, :]).reshape(count, -1)
     lags = max(1, min(LAGS, count // (10 * products.shape[1]), MOST_VALUES // products.size))
     columns = [products]

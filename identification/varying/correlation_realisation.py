@@ -1,4 +1,4 @@
-"""Affine state-space models from one experiment with varying scheduling: correlation analysis, then Ho–Kalman."""
+"""State-space models from one experiment with varying scheduling: correlation analysis, then Ho–Kalman."""
 
 from dataclasses import dataclass, replace
 from typing import Annotated, ClassVar, Literal, Protocol
@@ -7,11 +7,10 @@ import numpy as np
 
 from identification.arrays import FloatArray
 from identification.errors import MisuseError, NotIdentifiableError, RangeError
+from identification.estimates import Estimate, Found
+from identification.models.state_space import Matrices
 from identification.outcome import Outcome
-from identification.scheduling import with_constant
-from identification.varying.affine_estimate import AffineEstimate
-from identification.varying.affine_parameters import AffineSizes
-from identification.varying.affine_state_space import Matrices, simulate_matrices
+from identification.scheduling import ProductBasis
 from identification.varying.correlation_analysis import WhiteExcitation
 from identification.varying.correlation_assumptions import (
     broken_assumptions,
@@ -23,6 +22,8 @@ from identification.varying.ho_kalman import Realisation, full_realisation, larg
 from identification.varying.output_error import output_error
 from identification.varying.progress import Progress, silent, within
 from identification.varying.records import VaryingRecord
+from identification.varying.scheduled import Scheduled, Signals
+from identification.varying.stacks import StackSizes, simulated
 from identification.varying.sub_markov import (
     BasisSelection,
     ExactSubMarkov,
@@ -39,16 +40,15 @@ MOST_STATES = 10
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class CorrelationEstimate(AffineEstimate):
-    """With tests of the assumptions A1–A3, and what the model stands on.
+class CorrelationFound(Found):
+    """What the model stands on.
 
-    `warnings`: the assumptions that the data break; `parameters`: how the sub-Markov parameters were found;
-    `singular_values` of the Hankel matrix of the last realisation; `rows`, `columns`: the bases selected;
+    `warnings`: those of the assumptions A1–A3 that the data break; `parameters`: how the sub-Markov parameters were
+    found; `singular_values` of the Hankel matrix of the last realisation; `rows`, `columns`: the bases selected;
     `corrections`: how many were made; `noise_covariance` Σ_w (n_y, n_y): None, like the covariance of the model,
     without refinement.
     """
 
-    warnings: tuple[str, ...]
     parameters: Literal["correlation", "least_squares"]
     singular_values: FloatArray
     rows: BasisSelection
@@ -101,9 +101,16 @@ class CorrelationRealisation:
             raise RangeError(f"the ridge is {self.ridge}; it must not be negative", "ridge")
 
     def estimate(
-        self, record: VaryingRecord, order: int | None = None, *, progress: Progress = silent
-    ) -> CorrelationEstimate:
-        """The model of a record; without `order` n_x is taken from the singular values.
+        self,
+        record: VaryingRecord,
+        order: int | None = None,
+        *,
+        basis: ProductBasis | None = None,
+        progress: Progress = silent,
+    ) -> Estimate:
+        """The model of a record over the functions of a basis (1, p_1, p_2, …), with CorrelationFound.
+
+        Without `order` n_x is taken from the singular values.
 
         With a refinement orders from one up are tried instead, until the information criterion has risen twice:
 
@@ -112,26 +119,33 @@ class CorrelationRealisation:
         The record starts from rest, or in any state when refined: then it costs the first model little.
         Input and scheduling may be anything for least squares; correlation needs both white (A2, A3), which is tested.
         Raises NotIdentifiableError when scheduling or input are not rich enough for the words, the record is too short,
-        or the order is above the rank of the Hankel matrix; RangeError for an order that is not positive.
+        or the order is above the rank of the Hankel matrix; RangeError for an order that is not positive; and as
+        `Scheduled.of`.
         """
         if order is not None and order < 1:
             raise RangeError(f"the order is {order}; it must be one or more", "order")
-        self._require_few_words(record)
+        scheduled = Scheduled.of(record, basis)
         if order is None and self.refinement:
-            return self._of_best_order(record, progress)
-        psi = with_constant(record.scheduling)
-        tests = signal_tests(psi, record.input)
+            return self._of_best_order(scheduled, progress)
+        return self._of_order(scheduled, order, progress)[0]
+
+    def _of_order(
+        self, scheduled: Scheduled, order: int | None, progress: Progress
+    ) -> tuple[Estimate, CorrelationFound]:
+        record = scheduled.signals
+        self._require_few_words(record)
+        tests = signal_tests(record.phi, record.input)
         white = self.parameters == "correlation" or (self.parameters == "automatic" and correlation_applies(tests))
-        realising = self._by_correlation(psi, record, order) if white else self._by_least_squares(psi, record, order)
+        realising = self._by_correlation(record, order) if white else self._by_least_squares(record, order)
         progress(0.1, "realisation of the sub-Markov parameters")
         bases, first = realising.first(record.output, (self.rows, self.columns))
         found, corrections = realising.corrected(first, bases, record, self.corrections, within(progress, 0.2, 0.5))
-        model, outcome = found.model(record.sample_time, record.variables), Outcome("converged", "", corrections)
-        errors, covariance, noise = _errors(found.matrices, record), None, None
+        matrices, outcome = found.matrices, Outcome("converged", "", corrections)
+        errors, covariance, noise, variance = _errors(matrices, record), None, None, 1.0
         if self.refinement and np.all(np.isfinite(errors)):
-            refined = output_error(model, record, progress=within(progress, 0.5, 1.0))
-            model, outcome, errors = refined.model, refined.outcome, refined.errors
-            covariance, noise = refined.covariance, refined.noise_covariance
+            refined = output_error(matrices, record, progress=within(progress, 0.5, 1.0))
+            matrices, outcome, errors = refined.matrices, refined.outcome, refined.errors
+            covariance, noise, variance = refined.covariance, refined.noise_covariance, refined.noise_variance
         if not np.linalg.norm(errors) < np.linalg.norm(record.output):
             advice = (
                 "the model explains nothing of the output; choose another order, allow corrections or record longer"
@@ -139,11 +153,7 @@ class CorrelationRealisation:
             outcome = Outcome("not_converged", advice, outcome.iterations)
         elif (self.refinement or corrections) and np.linalg.norm(errors) > NOISE_FREE * np.linalg.norm(record.output):
             tests = (*tests, *noise_tests(errors))
-        return CorrelationEstimate(
-            model,
-            outcome,
-            tests,
-            covariance,
+        beside = CorrelationFound(
             warnings=broken_assumptions(tests, white),
             parameters="correlation" if white else "least_squares",
             singular_values=found.singular_values,
@@ -152,28 +162,29 @@ class CorrelationRealisation:
             corrections=corrections,
             noise_covariance=noise,
         )
+        return Estimate(scheduled.model(matrices, covariance, variance), outcome, tests, found=beside), beside
 
-    def _of_best_order(self, record: VaryingRecord, progress: Progress) -> CorrelationEstimate:
+    def _of_best_order(self, scheduled: Scheduled, progress: Progress) -> Estimate:
         most = MOST_STATES if self.hankel == "full" else max(min(self.rows, self.columns) // 2, 1)
-        best: tuple[float, CorrelationEstimate] | None = None
+        best: tuple[float, Estimate] | None = None
         for n in range(1, most + 1):
             try:
-                found = self.estimate(record, n, progress=within(progress, (n - 1) / most, n / most))
+                found, beside = self._of_order(scheduled, n, within(progress, (n - 1) / most, n / most))
             except NotIdentifiableError:
                 if best is None:
                     raise
                 break
-            score = _information(found, record)
+            score = _information(beside, found.model.structure.order, scheduled.signals)
             if best is None or score < best[0]:
                 best = (score, found)
-            if n >= best[1].model.order + 2 or _noise_free(found, record):
+            if n >= best[1].model.structure.order + 2 or _noise_free(beside, scheduled.signals):
                 break
         assert best is not None, "the first order gives a model or raises"
-        advice = f"order {best[1].model.order} was chosen among 1 to {n}. {best[1].outcome.advice}".strip()
+        advice = f"order {best[1].model.structure.order} was chosen among 1 to {n}. {best[1].outcome.advice}".strip()
         return replace(best[1], outcome=replace(best[1].outcome, advice=advice))
 
-    def _require_few_words(self, record: VaryingRecord) -> None:
-        k = record.scheduling.shape[1] + 1
+    def _require_few_words(self, record: Signals) -> None:
+        k = record.phi.shape[1]
         most = max(record.input.shape[1], record.output.shape[1]) * sum(
             float(k) ** n for n in range(1, self.word_length + 1)
         )
@@ -184,15 +195,15 @@ class CorrelationRealisation:
                 "word_length",
             )
 
-    def _by_correlation(self, psi: FloatArray, record: VaryingRecord, order: int | None) -> "_Realising":
+    def _by_correlation(self, record: Signals, order: int | None) -> "_Realising":
         depths = self.word_length, self.word_length
-        return _Realising(WhiteExcitation(psi, record.input), depths, self.hankel == "full", order)
+        return _Realising(WhiteExcitation(record.phi, record.input), depths, self.hankel == "full", order)
 
-    def _by_least_squares(self, psi: FloatArray, record: VaryingRecord, order: int | None) -> "_Realising":
+    def _by_least_squares(self, record: Signals, order: int | None) -> "_Realising":
         longest = _words_within(record, self.word_length)
         full = self.hankel == "full"
         depths = (longest - 2, 2) if full and longest < 4 else ((longest - 1) // 2, longest // 2)
-        return _Realising(WordRegression(psi, record.input, longest, self.ridge), depths, full, order)
+        return _Realising(WordRegression(record.phi, record.input, longest, self.ridge), depths, full, order)
 
     @classmethod
     def example(cls) -> "CorrelationRealisation":
@@ -224,7 +235,7 @@ class _Realising:
         return (rows, columns), self._realised(source, (rows, columns))
 
     def corrected(
-        self, best: Realisation, bases: Bases, record: VaryingRecord, most: int, progress: Progress
+        self, best: Realisation, bases: Bases, record: Signals, most: int, progress: Progress
     ) -> tuple[Realisation, int]:
         """Corrections while each takes 1 % off the output error; an order that is not given is taken anew."""
         if most == 0:
@@ -246,7 +257,7 @@ class _Realising:
         return reduced_realisation(source, *bases, self.order)
 
 
-def _tamed(found: Realisation, record: VaryingRecord) -> tuple[Realisation, FloatArray]:
+def _tamed(found: Realisation, record: Signals) -> tuple[Realisation, FloatArray]:
     """The realisation, its A_k made smaller while its output error exceeds twice the output; and that error."""
     a, b, c, d = found.matrices
     most = 2 * np.linalg.norm(record.output)
@@ -259,33 +270,34 @@ def _tamed(found: Realisation, record: VaryingRecord) -> tuple[Realisation, Floa
     return tamed, _errors(tamed.matrices, record)
 
 
-def _errors(matrices: Matrices, record: VaryingRecord) -> FloatArray:
+def _errors(matrices: Matrices, record: Signals) -> FloatArray:
     """y − ŷ (N, n_y), infinite where it has grown beyond all bounds."""
-    errors = record.output - simulate_matrices(matrices, record.input, record.scheduling)
+    errors = record.output - simulated(matrices, record.input, record.phi)[1]
     return np.where(abs(errors) < BEYOND_BOUNDS, errors, np.inf)
 
 
-def _information(found: CorrelationEstimate, record: VaryingRecord) -> float:
+def _information(found: CorrelationFound, order: int, record: Signals) -> float:
     """BIC; infinite where there is no refined model."""
     if found.noise_covariance is None:
         return np.inf
     size = float(np.linalg.slogdet(found.noise_covariance)[1])
-    return len(record) * size + AffineSizes.of(found.model).free * float(np.log(len(record)))
+    sizes = StackSizes(order, record.phi.shape[1], record.input.shape[1], record.output.shape[1])
+    return len(record) * size + sizes.free * float(np.log(len(record)))
 
 
-def _noise_free(found: CorrelationEstimate, record: VaryingRecord) -> bool:
+def _noise_free(found: CorrelationFound, record: Signals) -> bool:
     noise = np.inf if found.noise_covariance is None else float(np.trace(found.noise_covariance))
     return noise < NOISE_FREE**2 * float(np.sum(np.mean(record.output**2, axis=0)))
 
 
-def _words_within(record: VaryingRecord, word_length: int) -> int:
+def _words_within(record: Signals, word_length: int) -> int:
     """Letters of the longest words, at most 2 · word_length + 1, with four samples for each regressor."""
-    k, n_u = record.scheduling.shape[1] + 1, record.input.shape[1]
+    k, n_u = record.phi.shape[1], record.input.shape[1]
     for longest in range(2 * word_length + 1, 2, -1):
         if 4 * n_u * sum(k**length for length in range(1, longest + 1)) <= len(record):
             return longest
     raise NotIdentifiableError(
-        f"{len(record)} samples are too few for least squares with {k - 1} scheduling signals and {n_u} inputs:"
+        f"{len(record)} samples are too few for least squares with {k} functions of the scheduling and {n_u} inputs:"
         f" words of three letters make {n_u * (k + k**2 + k**3)} regressors; record four times as many samples",
         "scheduling",
     )

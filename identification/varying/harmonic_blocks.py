@@ -1,4 +1,4 @@
-"""The steady state of an affine model under periodic input and scheduling, in small independent blocks of lines."""
+"""The steady state of a model under periodic input and scheduling, in small independent blocks of lines."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -6,34 +6,29 @@ from functools import cached_property
 import numpy as np
 
 from identification.arrays import BoolArray, ComplexArray, FloatArray, IntArray
-from identification.scheduling import with_constant
-from identification.varying.affine_parameters import AffineSizes
-from identification.varying.affine_state_space import Matrices
+from identification.models.state_space import Matrices
 from identification.varying.period_recursion import periodic_response
+from identification.varying.stacks import StackSizes
 
 
 @dataclass(frozen=True, eq=False)
 class HarmonicBlocks:
     """Spectra Y(θ) of the steady output over one period of P samples, and ∂Y/∂θ [Goos2014, (18), (19)].
 
-        z_k X_k = Σ_i Σ_l μ_i[l] A_i X_{k − lP/T} + Σ_i B_i (p_i u)_k,   Y_k = Σ_i Σ_l μ_i[l] C_i X_{k − lP/T} + …
+        z_k X_k = Σ_i Σ_l μ_i[l] A_i X_{k − lP/T} + Σ_i B_i (φ_i u)_k,   Y_k = Σ_i Σ_l μ_i[l] C_i X_{k − lP/T} + …
 
-    `input` (P, n_u) and `scheduling` (P, n_p) are one period, T = `scheduling_period` a divisor of P; μ_i is the
-    discrete Fourier transform of p_i over T samples, divided by T, p_0 = 1. Only lines r, r + P/T, r + 2P/T, … are
+    `input` (P, n_u) and `phi` φ (P, k) are one period, T = `scheduling_period` a divisor of P; μ_i is the
+    discrete Fourier transform of φ_i over T samples, divided by T. Only lines r, r + P/T, r + 2P/T, … are
     coupled, so the equations fall into P/T blocks of T n_x unknowns; block −r is the conjugate of block r, and half of
     them are solved, all in one batch. That grows with T² n_x³ P; where T n_x is above `largest_block` and the model
     stable, the period is run through in time instead, which does not grow with T.
     """
 
-    sizes: AffineSizes
+    sizes: StackSizes
     input: FloatArray
-    scheduling: FloatArray
+    phi: FloatArray
     scheduling_period: int
     largest_block: int = 40
-
-    @cached_property
-    def _weights(self) -> FloatArray:
-        return with_constant(self.scheduling)
 
     @property
     def period(self) -> int:
@@ -60,15 +55,15 @@ class HarmonicBlocks:
 
     @cached_property
     def _circulants(self) -> ComplexArray:
-        """(1 + n_p, T, T): the convolution with μ_i."""
+        """(k, T, T): the convolution with μ_i."""
         steps = np.arange(self.scheduling_period)
-        spectra = np.fft.fft(self._weights[: self.scheduling_period], axis=0).T / self.scheduling_period
+        spectra = np.fft.fft(self.phi[: self.scheduling_period], axis=0).T / self.scheduling_period
         return np.asarray(spectra[:, (steps[:, None] - steps) % self.scheduling_period])
 
     @cached_property
     def extended_input(self) -> ComplexArray:
-        """(P, 1 + n_p, n_u): the spectra of p_i u, the extended input of the time-invariant start [Goos2014, (28)]."""
-        return np.asarray(np.fft.fft(self._weights[:, :, None] * self.input[:, None, :], axis=0))
+        """(P, k, n_u): the spectra of φ_i u, the extended input of the time-invariant start [Goos2014, (28)]."""
+        return np.asarray(np.fft.fft(self.phi[:, :, None] * self.input[:, None, :], axis=0))
 
     @cached_property
     def _block_input(self) -> ComplexArray:
@@ -80,7 +75,7 @@ class HarmonicBlocks:
 
     def stable(self, theta: FloatArray) -> bool:
         """Whether what an initial state leaves dies out: the spectral radius of A(T−1) … A(0) is below one."""
-        product = np.tensordot(self._weights[: self.scheduling_period], self.sizes.split(theta)[0], 1)
+        product = np.tensordot(self.phi[: self.scheduling_period], self.sizes.split(theta)[0], 1)
         with np.errstate(over="ignore", invalid="ignore"):
             while len(product) > 1:
                 even = 2 * (len(product) // 2)
@@ -114,7 +109,7 @@ class HarmonicBlocks:
         """Y at `lines`, (F, n_y)."""
         a, b, c, d = self.sizes.split(theta)
         if self._by_recursion(theta):
-            response = periodic_response((a, b, c, d), self.input, self.scheduling)
+            response = periodic_response((a, b, c, d), self.input, self.phi)
             return np.asarray(np.fft.fft(response.output, axis=0)[self.lines])
         blocks, period = self.block_lines.shape
         states = self._states(self._resolvent(a), b).reshape(blocks, -1, 1)
@@ -124,7 +119,7 @@ class HarmonicBlocks:
     def output_and_jacobian(self, theta: FloatArray) -> tuple[ComplexArray, ComplexArray]:
         """Y (F, n_y) and ∂Y/∂θ (F, n_y, size).
 
-        ∂Y/∂A_i[a, b] = Γ (zI − A)⁻¹ e_a (μ_i ∗ X)_b,   ∂Y/∂C_i[y, b] = e_y (μ_i ∗ X)_b,   p_i u for B_i and D_i
+        ∂Y/∂A_i[a, b] = Γ (zI − A)⁻¹ e_a (μ_i ∗ X)_b,   ∂Y/∂C_i[y, b] = e_y (μ_i ∗ X)_b,   φ_i u for B_i and D_i
         """
         n, n_y = self.sizes.order, self.sizes.n_outputs
         solved = self._recursion if self._by_recursion(theta) else self._blocks
@@ -134,13 +129,13 @@ class HarmonicBlocks:
         return output, np.concatenate([part.reshape(*part.shape[:2], -1) for part in parts], axis=2)
 
     def _blocks(self, matrices: Matrices) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
-        """Y, the spectra p_i ∗ (X, U) (F, 1 + n_p, n + n_u), and Γ (zI − A)⁻¹ e_a of them (F, n_y, 1 + n_p, n, …)."""
+        """Y, the spectra φ_i ∗ (X, U) (F, k, n + n_u), and Γ (zI − A)⁻¹ e_a of them (F, n_y, k, n, …)."""
         a, b, c, d = matrices
         blocks, period = self.block_lines.shape
         n, n_y, m = self.sizes.order, self.sizes.n_outputs, len(a)
         resolvent = self._resolvent(a)
         states = self._states(resolvent, b)
-        scheduled = np.tensordot(states, self._circulants, axes=(1, 2)).transpose(0, 3, 2, 1)  # (blocks, T, 1 + n_p, n)
+        scheduled = np.tensordot(states, self._circulants, axes=(1, 2)).transpose(0, 3, 2, 1)  # (blocks, T, k, n)
         signals = np.concatenate([scheduled, self._block_input], axis=3)
         output = np.tensordot(scheduled, c, axes=([2, 3], [0, 2])) + np.tensordot(
             self._block_input, d, axes=([2, 3], [0, 2])
@@ -152,7 +147,7 @@ class HarmonicBlocks:
 
     def _recursion(self, matrices: Matrices) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
         """The same from the signals of a period."""
-        response = periodic_response(matrices, self.input, self.scheduling)
+        response = periodic_response(matrices, self.input, self.phi)
         parts = response.output, response.signals, response.through().swapaxes(2, 3)
         mirrored = self.lines > self.period // 2
         spectra = [

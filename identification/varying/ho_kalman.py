@@ -6,8 +6,7 @@ import numpy as np
 
 from identification.arrays import FloatArray, IntArray
 from identification.errors import NotIdentifiableError, RangeError
-from identification.scheduling import SchedulingVariable
-from identification.varying.affine_state_space import AffineStateSpace, Matrices
+from identification.models.state_space import Matrices
 from identification.varying.sub_markov import BasisSelection, SubMarkovSource, every_word
 
 
@@ -25,10 +24,6 @@ class Realisation:
     def order(self) -> int:
         """n_x."""
         return int(self.matrices[0].shape[1])
-
-    def model(self, sample_time: float, variables: tuple[SchedulingVariable, ...] = ()) -> AffineStateSpace:
-        """As a state-space model."""
-        return AffineStateSpace(*self.matrices, sample_time, variables)
 
 
 def largest_entries(hankel: FloatArray, rows: int, columns: int) -> tuple[IntArray, IntArray]:

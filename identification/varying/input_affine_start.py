@@ -4,19 +4,19 @@ import numpy as np
 
 from identification.arrays import ComplexArray, FloatArray
 from identification.errors import NotIdentifiableError
-from identification.varying.affine_parameters import AffineSizes
-from identification.varying.affine_state_space import AffineStateSpace
+from identification.models.state_space import Matrices
 from identification.varying.harmonic_blocks import HarmonicBlocks
+from identification.varying.stacks import StackSizes
 
 STABLE_RADIUS = 0.95
 
 
 def input_affine_start(
-    blocks: HarmonicBlocks, spectrum: ComplexArray, deviation: FloatArray, block_rows: int, sample_time: float
-) -> AffineStateSpace:
-    """A model with A_i = 0, C_i = 0 for i > 0, and any B_i, D_i [Goos2014, (28), (29)].
+    blocks: HarmonicBlocks, spectrum: ComplexArray, deviation: FloatArray, block_rows: int
+) -> Matrices:
+    """Stacks with A_i = 0, C_i = 0 for i > 0, and any B_i, D_i [Goos2014, (28), (29)].
 
-        z_k X_k = A_0 X_k + Σ_i B_i (p_i u)_k,   Y_k = C_0 X_k + Σ_i D_i (p_i u)_k
+        z_k X_k = A_0 X_k + Σ_i B_i (φ_i u)_k,   Y_k = C_0 X_k + Σ_i D_i (φ_i u)_k
 
     A_0 and C_0 come from the column space of the stacked z^j Y_k, j < `block_rows`, from which the stacked extended
     inputs are projected out [McKelvey1996, Algorithm 2]; B_i and D_i by linear least squares. Y (F, n_y) = `spectrum`
@@ -32,20 +32,14 @@ def input_affine_start(
     radius = float(abs(np.linalg.eigvals(a)).max())
     a = a * min(1.0, STABLE_RADIUS / max(radius, 1e-12))
     b, d = _inputs(z, inputs, spectrum, weight, a, c)
-    m, n, n_u, n_y = sizes.n_scheduling + 1, sizes.order, sizes.n_inputs, sizes.n_outputs
+    m, n, n_u, n_y = sizes.functions, sizes.order, sizes.n_inputs, sizes.n_outputs
     stack_a, stack_c = np.zeros((m, n, n)), np.zeros((m, n_y, n))
     stack_a[0], stack_c[0] = a, c
-    return AffineStateSpace(
-        stack_a,
-        b.reshape(n, m, n_u).transpose(1, 0, 2),
-        stack_c,
-        d.reshape(n_y, m, n_u).transpose(1, 0, 2),
-        sample_time,
-    )
+    return stack_a, b.reshape(n, m, n_u).transpose(1, 0, 2), stack_c, d.reshape(n_y, m, n_u).transpose(1, 0, 2)
 
 
 def _dynamics(
-    z: ComplexArray, inputs: ComplexArray, spectrum: ComplexArray, sizes: AffineSizes, block_rows: int
+    z: ComplexArray, inputs: ComplexArray, spectrum: ComplexArray, sizes: StackSizes, block_rows: int
 ) -> tuple[FloatArray, FloatArray]:
     powers = z[:, None] ** np.arange(block_rows)
     u, y = (_real_rows(powers[:, :, None] * part[:, None, :]) for part in (inputs, spectrum))

@@ -1,6 +1,6 @@
-"""Maximum likelihood of affine state-space models from time records with white output noise."""
+"""Maximum likelihood of state-space models from records along p(t) with white output noise."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
 import numpy as np
@@ -8,22 +8,25 @@ from scipy.linalg import solve_triangular
 
 from identification.arrays import FloatArray
 from identification.errors import NotIdentifiableError, RangeError, ShapeError
+from identification.estimates import Estimate, Found
 from identification.least_squares import levenberg_marquardt
+from identification.models.model import Model
 from identification.models.recursion import propagate
+from identification.models.state_space import Matrices
 from identification.outcome import Outcome
-from identification.varying.affine_estimate import AffineEstimate
-from identification.varying.affine_parameters import AffineSizes
-from identification.varying.affine_state_space import AffineStateSpace, Matrices, frozen_matrices
+from identification.scheduling import ProductBasis
 from identification.varying.progress import Progress, Steps, silent, within
 from identification.varying.records import VaryingRecord
+from identification.varying.scheduled import Scheduled, Signals
+from identification.varying.stacks import StackSizes, along, balancing, simulated, transformed
 
-ROUNDS = 4
+ROUNDS, MOST_ROUNDS = 4, 16
 LARGE = 1e100
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class OutputErrorEstimate(AffineEstimate):
-    """With the covariance Σ_w (n_y, n_y) of the noise, the errors y − ŷ (N, n_y) and the first state (n_x,)."""
+class OutputErrorFound(Found):
+    """The covariance Σ_w (n_y, n_y) of the noise, the errors y − ŷ (N, n_y) and the first state (n_x,)."""
 
     noise_covariance: FloatArray
     errors: FloatArray
@@ -39,19 +42,34 @@ class OutputError:
 
     kind: ClassVar[str] = "output_error"
 
-    max_iterations: Annotated[int, "most iterations in each of four rounds, after which the noise is weighed anew"] = 30
+    max_iterations: Annotated[int, "most iterations in each round, after which the noise is weighed anew"] = 30
 
     def __post_init__(self) -> None:
         if self.max_iterations < 1:
             raise RangeError(f"max_iterations is {self.max_iterations}; it must be one or more", "max_iterations")
 
     def estimate(
-        self, record: VaryingRecord, order: int | None, start: AffineStateSpace, *, progress: Progress = silent
-    ) -> OutputErrorEstimate:
-        """The estimate of a record; the order is that of the start. Raises as `output_error`."""
-        if order not in (None, start.order):
-            raise ShapeError(f"the start has order {start.order}, {order} is asked for", "start")
-        return output_error(start, record, self.max_iterations, progress)
+        self,
+        record: VaryingRecord,
+        order: int | None,
+        start: Model,
+        *,
+        basis: ProductBasis | None = None,
+        progress: Progress = silent,
+    ) -> Estimate:
+        """The estimate of a record, with OutputErrorFound; order and basis are those of the start.
+
+        Raises ShapeError for a start of other sizes, MisuseError for one over other functions, and as `output_error`.
+        """
+        if order not in (None, start.structure.order):
+            raise ShapeError(f"the start has order {start.structure.order}, {order} is asked for", "start")
+        scheduled = Scheduled.of(record, basis, start)
+        first = scheduled.matrices(start, start.structure.order)
+        fit = output_error(first, scheduled.signals, self.max_iterations, progress)
+        found = OutputErrorFound(
+            noise_covariance=fit.noise_covariance, errors=fit.errors, initial_state=fit.initial_state
+        )
+        return Estimate(scheduled.model(fit.matrices, fit.covariance, fit.noise_variance), fit.outcome, (), found=found)
 
     @classmethod
     def example(cls) -> "OutputError":
@@ -59,72 +77,74 @@ class OutputError:
         return cls()
 
 
+@dataclass(frozen=True, eq=False)
+class OutputErrorFit:
+    """The stacks with the covariance (size, size) of their entries, and what `OutputErrorFound` tells."""
+
+    matrices: Matrices
+    outcome: Outcome
+    covariance: FloatArray | None
+    noise_covariance: FloatArray
+    errors: FloatArray
+    initial_state: FloatArray
+
+    @property
+    def noise_variance(self) -> float:
+        """Of the only output; one where there are several."""
+        return float(self.noise_covariance[0, 0]) if len(self.noise_covariance) == 1 else 1.0
+
+
 def output_error(
-    start: AffineStateSpace, record: VaryingRecord, max_iterations: int = 30, progress: Progress = silent
-) -> OutputErrorEstimate:
-    """The output-error estimate from a model near it: maximum likelihood when the noise is white and Gaussian.
+    start: Matrices, record: Signals, max_iterations: int = 30, progress: Progress = silent
+) -> OutputErrorFit:
+    """The output-error estimate from stacks near it: maximum likelihood when the noise is white and Gaussian.
 
         θ̂, x̂(0) = arg min Σ_t ‖Σ_w^{-½} (y(t) − ŷ(t, θ, x(0)))‖²,   P_θ = Q (QᵀJᵀJQ)⁻¹ Qᵀ
 
     All matrices are free; θ moves in the orthogonal complement Q of what a change of state coordinates does to first
     order, A_kT − TA_k, −TB_k, C_kT, at the start of each round, so that JQ has full rank. Σ_w is the covariance of the
-    errors of the round before, at least 1e-20 of the output's mean square. The record may begin in any state. Raises
-    ShapeError for sizes that do not fit and NotIdentifiableError with fewer values of the output than parameters.
+    errors of the round before, at least 1e-20 of the output's mean square; a round that did not reach its minimum is
+    followed by one in a balanced state basis. The record may begin in any state. Raises NotIdentifiableError with fewer
+    values of the output than parameters.
     """
-    _require_fit(start, record)
-    model, iterations, initial = start, 0, np.zeros(start.order)
+    _require_enough(start, record)
+    matrices, iterations = start, 0
+    initial: FloatArray = np.zeros(start[0].shape[1])
     floor = 1e-20 * np.maximum(np.mean(record.output**2, axis=0), np.finfo(float).tiny)
-    errors = record.output - _simulated(_matrices(model), record, initial)[1]
-    for i in range(ROUNDS):
-        steps = Steps(within(progress, i / ROUNDS, (i + 1) / ROUNDS), f"likelihood, round {i + 1}")
-        problem = _Problem(model, initial, record, errors.T @ errors / len(errors) + np.diag(floor), floor)
+    errors = record.output - simulated(matrices, record.input, record.phi, initial)[1]
+    weighed = 0
+    for i in range(MOST_ROUNDS):
+        steps = Steps(within(progress, i / MOST_ROUNDS, (i + 1) / MOST_ROUNDS), f"likelihood, round {i + 1}")
+        problem = _Problem(matrices, initial, record, errors.T @ errors / len(errors) + np.diag(floor), floor)
         solution = levenberg_marquardt(steps.of(problem.evaluate), np.zeros(problem.size), None, max_iterations, 1e-4)
         iterations += solution.outcome.iterations
-        a, b, c, d = problem.matrices(solution.x)
-        model, initial = replace(model, a=a, b=b, c=c, d=d), problem.state(solution.x)
-        errors = record.output - _simulated((a, b, c, d), record, initial)[1]
-        if solution.outcome.status != "converged" or solution.cost > (1 - 1e-6) * errors.size:
+        matrices, initial = problem.matrices(solution.x), problem.state(solution.x)
+        errors = record.output - simulated(matrices, record.input, record.phi, initial)[1]
+        if np.all(np.mean(errors**2, axis=0) < floor) or solution.outcome.status == "not_identifiable":
             break
-        if np.all(np.mean(errors**2, axis=0) < floor):
-            break
+        if solution.outcome.status == "converged":
+            weighed += 1
+            if weighed == ROUNDS or solution.cost > (1 - 1e-6) * errors.size:
+                break
+        elif i + 1 < MOST_ROUNDS:
+            basis = balancing(matrices)
+            matrices = transformed(matrices, basis)
+            initial = np.linalg.solve(basis, initial).astype(np.float64)
     outcome = Outcome(solution.outcome.status, solution.outcome.advice, iterations)
     known = outcome.status != "not_identifiable"
     of_model = slice(0, problem.sizes.free)
     covariance = problem.chart @ solution.covariance[of_model, of_model] @ problem.chart.T if known else None
-    noise = errors.T @ errors / len(errors)
-    return OutputErrorEstimate(
-        model, outcome, (), covariance, noise_covariance=noise, errors=errors, initial_state=initial
-    )
+    return OutputErrorFit(matrices, outcome, covariance, errors.T @ errors / len(errors), errors, initial)
 
 
-def _require_fit(start: AffineStateSpace, record: VaryingRecord) -> None:
-    widths = (start.n_inputs, start.n_outputs, start.n_scheduling)
-    given = tuple(signal.shape[1] for signal in (record.input, record.output, record.scheduling))
-    if widths != given:
-        raise ShapeError(
-            f"the model has {widths} inputs, outputs and scheduling signals, the record {given}; give the same",
-            "record",
-        )
-    parameters = AffineSizes.of(start).size
+def _require_enough(start: Matrices, record: Signals) -> None:
+    parameters = StackSizes.of(start).size
     if record.output.size <= parameters:
         raise NotIdentifiableError(
             f"{record.output.size} values of the output cannot determine {parameters} parameters; record longer or"
             " choose a lower order",
             "output",
         )
-
-
-def _matrices(model: AffineStateSpace) -> Matrices:
-    return model.a, model.b, model.c, model.d
-
-
-def _simulated(matrices: Matrices, record: VaryingRecord, initial: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """States (N, n_x) and output (N, n_y) from x(0); what diverges comes out as inf or nan."""
-    a, b, c, d = frozen_matrices(matrices, record.scheduling)
-    u = record.input[..., None]
-    with np.errstate(over="ignore", invalid="ignore"):
-        x = propagate(a, (b @ u)[..., 0], initial)[:-1]
-        return x, np.asarray((c @ x[..., None] + d @ u)[..., 0])
 
 
 class _Problem:
@@ -135,18 +155,18 @@ class _Problem:
 
     def __init__(
         self,
-        start: AffineStateSpace,
+        start: Matrices,
         initial: FloatArray,
-        record: VaryingRecord,
+        record: Signals,
         noise: FloatArray,
         floor: FloatArray,
     ) -> None:
-        self.sizes, self.initial = AffineSizes.of(start), initial
+        self.sizes, self.initial = StackSizes.of(start), initial
         self.size = self.sizes.free + self.sizes.order
-        states = _simulated(_matrices(start), record, np.zeros(start.order))[0]
+        states = simulated(start, record.input, record.phi)[0]
         size = float(np.sqrt(np.mean(np.minimum(states**2, LARGE**2), where=np.isfinite(states))))
         self.spread = 1e3 * (size or 1.0)
-        self.start = self.sizes.join(_matrices(start))
+        self.start = self.sizes.join(start)
         self.chart = self.sizes.chart(self.start)
         self.record, self.root = record, np.linalg.cholesky(noise).astype(np.float64)
         # One constant residual of the size of rounding, so that the search ends when only rounding is left.
@@ -166,7 +186,7 @@ class _Problem:
         The long residual itself is not needed: its norm and the projections on the derivatives are kept by Zᵀ.
         """
         matrices, record = self.matrices(beta), self.record
-        x, output = _simulated(matrices, record, self.state(beta))
+        x, output = simulated(matrices, record.input, record.phi, self.state(beta))
         of_model, n, rows = self.sizes.size, self.sizes.order, output.size
         columns = of_model + n + 1
         residual, jacobian = np.full(columns + 1, self.rounding), np.zeros((columns + 1, self.size))
@@ -185,9 +205,9 @@ class _Problem:
         return residual, jacobian
 
 
-def _by_initial_state(matrices: Matrices, record: VaryingRecord, root: FloatArray) -> FloatArray:
+def _by_initial_state(matrices: Matrices, record: Signals, root: FloatArray) -> FloatArray:
     """Σ_w^{-½} ∂ŷ/∂x(0), (n_y N, n_x), zero from where it has died out or blown up."""
-    a, _, c, _ = frozen_matrices(matrices, record.scheduling)
+    a, _, c, _ = along(matrices, record.phi)
     n = a.shape[1]
     with np.errstate(over="ignore", invalid="ignore"):
         states = propagate(a, np.zeros((n, len(a), n)), np.eye(n))[:, :-1]
@@ -196,14 +216,11 @@ def _by_initial_state(matrices: Matrices, record: VaryingRecord, root: FloatArra
     return np.asarray(found.transpose(2, 1, 0).reshape(-1, n))
 
 
-def _fill_gradient(
-    found: FloatArray, matrices: Matrices, record: VaryingRecord, x: FloatArray, root: FloatArray
-) -> None:
+def _fill_gradient(found: FloatArray, matrices: Matrices, record: Signals, x: FloatArray, root: FloatArray) -> None:
     """Σ_w^{-½} ∂ŷ/∂θ into `found` (n_y N, n_θ), from the sensitivities of the state to a pulse in each equation."""
     n_y, samples, n = record.output.shape[1], len(x), x.shape[1]
-    a, _, c, _ = frozen_matrices(matrices, record.scheduling)
-    psi = np.concatenate([np.ones((samples, 1)), record.scheduling], axis=1)
-    drive = psi[:, :, None] * np.concatenate([x, record.input], axis=1)[:, None, :]
+    a, _, c, _ = along(matrices, record.phi)
+    drive = record.phi[:, :, None] * np.concatenate([x, record.input], axis=1)[:, None, :]
     whitener = solve_triangular(root, np.eye(n_y), lower=True)
     sensitivity = _sensitivities(a, drive.reshape(samples, -1)).reshape(samples, n, -1)
     # Axes: output, sample, basis function, equation, state or input.

@@ -6,8 +6,8 @@ from functools import cached_property
 import numpy as np
 
 from identification.arrays import FloatArray
-from identification.scheduling import with_constant
-from identification.varying.affine_state_space import Matrices, frozen_matrices
+from identification.models.state_space import Matrices
+from identification.varying.stacks import along
 
 AT_ONCE = 100_000  # numbers of x(t): what stays in the cache, and no more memory than one state needs
 
@@ -67,7 +67,7 @@ class PeriodRecursion:
 class PeriodicResponse:
     """The steady response over a period, and what it takes to differentiate it.
 
-    `output` y (P, n_y); `signals` p_i x and p_i u, p_0 = 1, (P, 1 + n_p, n + n_u); `c` C(p(t)), (P, n_y, n).
+    `output` y (P, n_y); `signals` φ_i x and φ_i u (P, k, n + n_u); `c` C(p(t)), (P, n_y, n).
     """
 
     output: FloatArray
@@ -76,7 +76,7 @@ class PeriodicResponse:
     recursion: PeriodRecursion
 
     def through(self) -> FloatArray:
-        """What each signal, added to each state, does to y: (P, n_y, n, 1 + n_p, n + n_u); some states at a time."""
+        """What each signal, added to each state, does to y: (P, n_y, n, k, n + n_u); some states at a time."""
         samples, n_y, n = self.c.shape
         flat = self.signals.reshape(samples, -1)
         at_once = max(1, AT_ONCE // (n * flat.size))
@@ -90,10 +90,10 @@ class PeriodicResponse:
         return found.reshape(samples, n_y, n, *self.signals.shape[1:])
 
 
-def periodic_response(matrices: Matrices, u: FloatArray, p: FloatArray) -> PeriodicResponse:
-    """Of the stacks A_i, B_i, C_i, D_i to one period of u (P, n_u) along p (P, n_p)."""
-    a, b, c, d = frozen_matrices(matrices, p)
+def periodic_response(matrices: Matrices, u: FloatArray, phi: FloatArray) -> PeriodicResponse:
+    """Of the stacks A_i, B_i, C_i, D_i to one period of u (P, n_u) along φ (P, k)."""
+    a, b, c, d = along(matrices, phi)
     recursion = PeriodRecursion(a)
     x = recursion.solve(b @ u[:, :, None])
-    signals = with_constant(p)[:, :, None] * np.concatenate([x[:, :, 0], u], axis=1)[:, None]
+    signals = phi[:, :, None] * np.concatenate([x[:, :, 0], u], axis=1)[:, None]
     return PeriodicResponse((c @ x + d @ u[:, :, None])[:, :, 0], signals, c, recursion)

@@ -1,4 +1,4 @@
-"""Maximum likelihood of an affine state-space model from synchronised periodic data, in the frequency domain."""
+"""Maximum likelihood of a state-space model from synchronised periodic data, in the frequency domain."""
 
 from dataclasses import dataclass, replace
 from typing import Annotated, ClassVar
@@ -6,19 +6,21 @@ from typing import Annotated, ClassVar
 import numpy as np
 
 from identification.arrays import FloatArray
-from identification.errors import MisuseError, NotIdentifiableError, RangeError, ShapeError
+from identification.errors import MisuseError, NotIdentifiableError, RangeError
+from identification.estimates import Estimate
 from identification.least_squares import LeastSquaresSolution, levenberg_marquardt
 from identification.lti.response_tests import variance_inflation
+from identification.models.model import Model
+from identification.models.state_space import Matrices
 from identification.outcome import Outcome
-from identification.scheduling import SchedulingVariable
-from identification.varying.affine_estimate import AffineEstimate
-from identification.varying.affine_parameters import AffineSizes, balanced, stated_order
-from identification.varying.affine_state_space import AffineStateSpace
+from identification.scheduling import ProductBasis
 from identification.varying.input_affine_start import input_affine_start
 from identification.varying.periodic_residuals import PeriodicResiduals, lack_of_fit
 from identification.varying.perturbed_starts import perturbed_starts, stabilised
 from identification.varying.progress import Progress, Steps, silent, within
-from identification.varying.records import TOLERANCE, SteadyPeriods, VaryingRecord, steady_periods
+from identification.varying.records import TOLERANCE, VaryingRecord, steady_periods
+from identification.varying.scheduled import Scheduled
+from identification.varying.stacks import balanced, stated_order
 
 CHARTS = 20
 STEPS_IN_A_CHART = 15
@@ -66,45 +68,33 @@ class PeriodicLikelihood:
         self,
         record: VaryingRecord,
         order: int | None,
-        start: AffineStateSpace | None = None,
+        start: Model | None = None,
         *,
+        basis: ProductBasis | None = None,
         progress: Progress = silent,
-    ) -> AffineEstimate:
-        """The model of order n_x of a record, with its covariance.
+    ) -> Estimate:
+        """The model of order n_x of a record over the functions of a basis (1, p_1, p_2, …), with its covariance.
 
         Raises MisuseError when the record is not periodic, not synchronised or too short (see `steady_periods`),
-        NotIdentifiableError when its lines cannot determine so many parameters, ShapeError when the start does not fit.
-        Excitation of too low a rank gives the outcome "not_identifiable" and no covariance.
+        NotIdentifiableError when its lines cannot determine so many parameters, ShapeError when the start does not fit,
+        and as `Scheduled.of`. Excitation of too low a rank gives the outcome "not_identifiable" and no covariance.
         """
-        steady = steady_periods(record, self.drop_periods, self.tolerance)
-        return self.estimate_steady(steady, order, record.sample_time, start, record.variables, progress)
-
-    def estimate_steady(
-        self,
-        steady: SteadyPeriods,
-        order: int | None,
-        sample_time: float,
-        start: AffineStateSpace | None = None,
-        variables: tuple[SchedulingVariable, ...] = (),
-        progress: Progress = silent,
-    ) -> AffineEstimate:
-        """As `estimate`, from steady periods; `variables` are the declared scheduling variables, if any."""
-        order = stated_order(order)
-        residuals = PeriodicResiduals.of(steady, order, self.zero_frequency)
-        sizes = residuals.blocks.sizes
+        order, steady = stated_order(order), steady_periods(record, self.drop_periods, self.tolerance)
+        scheduled = Scheduled.of(record, basis, start)
+        residuals = PeriodicResiduals.of(steady, scheduled.at(steady.scheduling), order, self.zero_frequency)
         _require_enough(residuals)
-        starts = _starts(residuals, sample_time) if start is None else [_fitting(start, sizes)]
+        starts = _starts(residuals) if start is None else [scheduled.matrices(start, order)]
         solution, chart = self._search(residuals, starts, progress)
-        model = sizes.model(solution.x, sample_time, variables)
+        matrices = residuals.blocks.sizes.split(solution.x)
         if solution.outcome.status == "not_identifiable":
-            return AffineEstimate(model, solution.outcome, ())
+            return Estimate(scheduled.model(matrices), solution.outcome, ())
         inflation = variance_inflation(residuals.noise.degrees_of_freedom)
         covariance = inflation * chart @ replace(solution, jacobian=solution.jacobian @ chart).covariance @ chart.T
         fit = lack_of_fit(residuals, solution)
         outcome = solution.outcome
         if outcome.ok and fit.p_value < ACCEPTED_FIT:
             outcome = replace(outcome, advice=BAD_FIT)
-        return AffineEstimate(model, outcome, (fit,), covariance)
+        return Estimate(scheduled.model(matrices, covariance, residuals.noise_variance), outcome, (fit,))
 
     @classmethod
     def example(cls) -> "PeriodicLikelihood":
@@ -112,10 +102,10 @@ class PeriodicLikelihood:
         return cls()
 
     def _search(
-        self, residuals: PeriodicResiduals, first: list[AffineStateSpace], progress: Progress
+        self, residuals: PeriodicResiduals, first: list[Matrices], progress: Progress
     ) -> tuple[LeastSquaresSolution, FloatArray]:
         """The best solution in θ with J (R, size), and its chart Q; more starts are tried while the fit is bad."""
-        thetas = [stabilised(residuals.blocks, residuals.blocks.sizes.join(_matrices(start))) for start in first]
+        thetas = [stabilised(residuals.blocks, residuals.blocks.sizes.join(start)) for start in first]
         rounds = self.more_starts + 1
         best = self._lowest(residuals, thetas, None, within(progress, 0.0, 1 / rounds))
         generator = np.random.default_rng(self.seed)
@@ -155,7 +145,7 @@ def minimised(
     sizes, iterations = residuals.blocks.sizes, 0
     for i in range(max_charts):
         steps = Steps(within(progress, i / max_charts, (i + 1) / max_charts), f"likelihood, chart {i + 1}")
-        theta = sizes.join(_matrices(balanced(sizes.model(theta, 1.0))))
+        theta = sizes.join(balanced(sizes.split(theta)))
         chart, centre = sizes.chart(theta), theta
 
         def evaluate(
@@ -179,31 +169,19 @@ def minimised(
     return LeastSquaresSolution(theta, solution.residual, jacobian, outcome), sizes.chart(theta)
 
 
-def _starts(residuals: PeriodicResiduals, sample_time: float) -> list[AffineStateSpace]:
-    """Models with A_i = 0, i > 0, from a small and a large number of block rows."""
-    found: list[AffineStateSpace] = []
+def _starts(residuals: PeriodicResiduals) -> list[Matrices]:
+    """Stacks with A_i = 0, i > 0, from a small and a large number of block rows."""
+    found: list[Matrices] = []
     trouble: NotIdentifiableError | None = None
     order = residuals.blocks.sizes.order
     for rows in (order + 2, 2 * order + 4, order + 1):
         try:
-            found.append(
-                input_affine_start(residuals.blocks, residuals.measured, residuals.deviation, rows, sample_time)
-            )
+            found.append(input_affine_start(residuals.blocks, residuals.measured, residuals.deviation, rows))
         except NotIdentifiableError as error:
             trouble = error
     if not found and trouble is not None:
         raise trouble
     return found
-
-
-def _fitting(start: AffineStateSpace, sizes: AffineSizes) -> AffineStateSpace:
-    if AffineSizes.of(start) != sizes:
-        raise ShapeError(f"the start has the sizes {AffineSizes.of(start)}, the record needs {sizes}", "start")
-    return start
-
-
-def _matrices(model: AffineStateSpace) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    return model.a, model.b, model.c, model.d
 
 
 def _require_enough(residuals: PeriodicResiduals) -> None:

@@ -1,4 +1,4 @@
-"""Subspace identification of an affine state-space model from a record with periodic scheduling, in the time domain."""
+"""Subspace identification of a state-space model from a record with periodic scheduling, in the time domain."""
 
 from dataclasses import dataclass
 from typing import Annotated, ClassVar
@@ -7,15 +7,16 @@ import numpy as np
 
 from identification.arrays import FloatArray
 from identification.errors import MisuseError, NotIdentifiableError, RangeError
+from identification.estimates import Estimate
 from identification.models.recursion import propagate
+from identification.models.state_space import Matrices
 from identification.outcome import Outcome
-from identification.scheduling import with_constant
-from identification.varying.affine_estimate import AffineEstimate
-from identification.varying.affine_parameters import stated_order
-from identification.varying.affine_state_space import AffineStateSpace, frozen_matrices, simulate_matrices
+from identification.scheduling import ProductBasis
 from identification.varying.periodic_observability import common_basis, periodic_observability
 from identification.varying.progress import Progress, silent
 from identification.varying.records import TOLERANCE, VaryingRecord, scheduling_period
+from identification.varying.scheduled import Scheduled, Signals
+from identification.varying.stacks import along, simulated, stated_order
 
 REGULARISATIONS = tuple(10.0**k for k in range(-8, 5))
 AMBIGUOUS = 0.995
@@ -55,39 +56,42 @@ class PeriodicMoesp:
         order: int | None,
         *,
         validation: VaryingRecord | None = None,
+        basis: ProductBasis | None = None,
         progress: Progress = silent,
-    ) -> AffineEstimate:
-        """The model of order n_x; `validation` starts from rest. The advice says which ν was chosen.
+    ) -> Estimate:
+        """The model of order n_x over the functions of a basis (1, p_1, p_2, …); `validation` starts from rest.
 
-        Raises MisuseError for scheduling that is not periodic, RangeError for a window outside T ≥ d > n_x,
-        NotIdentifiableError for records too short, excitation of too low a rank, or when no ν gives a model that can be
-        simulated.
+        The advice says which ν was chosen. Raises MisuseError for scheduling that is not periodic, RangeError for a
+        window outside T ≥ d > n_x, NotIdentifiableError for records too short, excitation of too low a rank, or when no
+        ν gives a model that can be simulated; and as `Scheduled.of`.
         """
         order = stated_order(order)
         period = scheduling_period(record, self.tolerance)
         window = self._window(order, period)
-        fitted = record if validation is not None else record.part(0, len(record) - len(record) // 5)
-        weights = with_constant(record.scheduling[:period])
+        scheduled = Scheduled.of(record, basis)
+        whole, held_out = scheduled.signals, None if validation is None else scheduled.of_other(validation)
+        fitted = whole if held_out is not None else whole.part(0, len(whole) - len(whole) // 5)
+        weights = whole.phi[:period]
         observability = periodic_observability(fitted.input, fitted.output, period, window, order)
         scored, n_y = [], record.output.shape[1]
         for i, regularisation in enumerate(self.regularisations):
             progress(i / len(self.regularisations), f"regularisation {regularisation:g}")
             common = common_basis(observability.bases, weights, n_y, regularisation, self.varying_output)
             a, c = affine_dynamics(common.bases, weights, n_y, self.varying_output)
-            error, model = self._validated(fitted, record, validation, a, c)
-            if np.isfinite(error) and model is not None:
-                scored.append((error, regularisation, model))
+            error = self._validated(fitted, whole, held_out, a, c)
+            if np.isfinite(error):
+                scored.append((error, regularisation, a, c))
         if not scored:
             raise NotIdentifiableError(
                 "no regularisation gives a model that is stable along this scheduling; choose another order or window,"
                 " or record longer",
                 "regularisations",
             )
-        _, chosen, model = min(scored, key=lambda item: item[0])
-        model = with_inputs(model.a, model.c, record)
+        _, chosen, a, c = min(scored, key=lambda item: item[0])
+        model = scheduled.model(with_inputs(a, c, whole))
         exact = common_basis(observability.bases, weights, n_y, min(self.regularisations), self.varying_output)
         advice = f"regularisation {chosen:g} was chosen" + self._ambiguity(exact.correlations, order)
-        return AffineEstimate(model, Outcome("converged", advice, len(scored)), ())
+        return Estimate(model, Outcome("converged", advice, len(scored)), ())
 
     @classmethod
     def example(cls) -> "PeriodicMoesp":
@@ -115,28 +119,27 @@ class PeriodicMoesp:
 
     def _validated(
         self,
-        fitted: VaryingRecord,
-        record: VaryingRecord,
-        validation: VaryingRecord | None,
+        fitted: Signals,
+        record: Signals,
+        validation: Signals | None,
         a: FloatArray,
         c: FloatArray,
-    ) -> tuple[float, AffineStateSpace | None]:
-        """The mean squared simulation error on validation data, with the model; inf for an unstable one."""
+    ) -> float:
+        """The mean squared simulation error on validation data; inf for an unstable model."""
         part = fitted.part(0, min(len(fitted), self.selection_samples))
         try:
-            model = with_inputs(a, c, part)
+            matrices = with_inputs(a, c, part)
         except MisuseError:
-            return np.inf, None
+            return np.inf
         if validation is not None:
             test, first = validation, 0
         else:
             first = max(len(fitted) - self.selection_samples // 5, 0)
             stop = min(len(record), len(fitted) + self.selection_samples)
             test, first = record.part(first, stop), len(fitted) - first
-        matrices = (model.a, model.b, model.c, model.d)
         with np.errstate(over="ignore", invalid="ignore"):
-            error = simulate_matrices(matrices, test.input, test.scheduling) - test.output
-            return float(np.mean(error[first:] ** 2)), model
+            error = simulated(matrices, test.input, test.phi)[1] - test.output
+            return float(np.mean(error[first:] ** 2))
 
 
 def affine_dynamics(
@@ -156,16 +159,15 @@ def affine_dynamics(
     return np.asarray(a.reshape(m, order, order)), np.asarray(c.reshape(m, n_y, order))
 
 
-def with_inputs(a: FloatArray, c: FloatArray, record: VaryingRecord) -> AffineStateSpace:
-    """The model with those A_i, C_i, and B_i, D_i (and the initial state) by linear least squares on a record.
+def with_inputs(a: FloatArray, c: FloatArray, record: Signals) -> Matrices:
+    """The stacks with those A_i, C_i, and B_i, D_i (and the initial state) by linear least squares on a record.
 
     Raises NotIdentifiableError when the response of A_i grows beyond all numbers or the regressors are dependent.
     """
     m, order = a.shape[:2]
     n_y, n_u, count = c.shape[1], record.input.shape[1], len(record)
-    weights = with_constant(record.scheduling)
-    at, _, ct, _ = frozen_matrices((a, a, c, c), record.scheduling)
-    driven = (weights[:, :, None] * record.input[:, None, :]).reshape(count, -1)
+    at, _, ct, _ = along((a, a, c, c), record.phi)
+    driven = (record.phi[:, :, None] * record.input[:, None, :]).reshape(count, -1)
     forcing = np.zeros((order, m * n_u, count, order))
     for i in range(order):
         forcing[i, :, :, i] = driven.T
@@ -181,4 +183,4 @@ def with_inputs(a: FloatArray, c: FloatArray, record: VaryingRecord) -> AffineSt
     size = order * m * n_u
     b = solved[:size].reshape(order, m, n_u).transpose(1, 0, 2)
     d = solved[size + order :].reshape(n_y, m, n_u).transpose(1, 0, 2)
-    return AffineStateSpace(a, b, c, d, record.sample_time, record.variables)
+    return a, b, c, d

@@ -1,4 +1,4 @@
-"""Deviations between the spectrum of a periodic record and that of an affine model, white with unit variance."""
+"""Deviations between the spectrum of a periodic record and that of a model, white with unit variance."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -10,10 +10,10 @@ from identification.arrays import BoolArray, ComplexArray, FloatArray
 from identification.errors import RangeError
 from identification.least_squares import LeastSquaresSolution
 from identification.outcome import TestResult
-from identification.varying.affine_parameters import AffineSizes
 from identification.varying.harmonic_blocks import HarmonicBlocks
 from identification.varying.harmonic_noise import HarmonicNoise, Whitening, harmonic_noise
 from identification.varying.records import SteadyPeriods
+from identification.varying.stacks import StackSizes
 
 MOST_ENTRIES = 20_000_000  # complex numbers in the resolvents of all blocks, twice
 
@@ -24,22 +24,28 @@ class PeriodicResiduals:
 
         r(θ) = C_e^{−1/2} (Y(θ) − Ȳ),   V_ML = ‖r‖²,   J = ∂r/∂θ
 
-    r (R,) has unit variance for the true θ; J (R, size) has n_x² directions in which nothing changes.
+    `periods` were averaged. r (R,) has unit variance for the true θ; J (R, size) has n_x² directions in which nothing
+    changes.
     """
 
     blocks: HarmonicBlocks
     measured: ComplexArray
     noise: HarmonicNoise
     used: BoolArray
+    periods: int = 1
 
     @classmethod
-    def of(cls, steady: SteadyPeriods, order: int, zero_frequency: bool = True) -> "PeriodicResiduals":
-        """From steady periods, for models with n_x = `order`; raises RangeError when they need too much memory."""
+    def of(cls, steady: SteadyPeriods, phi: FloatArray, order: int, zero_frequency: bool = True) -> "PeriodicResiduals":
+        """From steady periods along φ (P, k), for models with n_x = `order`.
+
+        Raises RangeError when they need too much memory.
+        """
         _require_small(steady, order)
-        sizes = AffineSizes(order, steady.scheduling.shape[1], steady.input.shape[1], steady.output.shape[2])
-        blocks = HarmonicBlocks(sizes, steady.input, steady.scheduling, steady.periodicity.scheduling_period)
+        sizes = StackSizes(order, phi.shape[1], steady.input.shape[1], steady.output.shape[2])
+        blocks = HarmonicBlocks(sizes, steady.input, phi, steady.periodicity.scheduling_period)
         spectrum = np.fft.fft(steady.output.mean(axis=0), axis=0)[blocks.lines]
-        return cls(blocks, spectrum, harmonic_noise(steady), (blocks.lines > 0) | zero_frequency)
+        used = (blocks.lines > 0) | zero_frequency
+        return cls(blocks, spectrum, harmonic_noise(steady), used, len(steady.output))
 
     @cached_property
     def real(self) -> BoolArray:
@@ -56,6 +62,13 @@ class PeriodicResiduals:
         """Root of the mean noise variance over the outputs at each line, (F,)."""
         variances = np.einsum("fyy->f", self.noise.covariance[self.blocks.lines].real)
         return np.asarray(np.sqrt(variances / self.measured.shape[1]))
+
+    @property
+    def noise_variance(self) -> float:
+        """Of one sample of the only output; one where there are several."""
+        if self.measured.shape[1] > 1:
+            return 1.0
+        return float(np.sum(self.noise.covariance.real)) * self.periods / self.blocks.period**2
 
     def residual(self, theta: FloatArray) -> FloatArray:
         """r (R,)."""

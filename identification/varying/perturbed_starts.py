@@ -3,9 +3,9 @@
 import numpy as np
 
 from identification.arrays import FloatArray
-from identification.varying.affine_parameters import AffineSizes
 from identification.varying.harmonic_blocks import HarmonicBlocks
 from identification.varying.periodic_residuals import PeriodicResiduals
+from identification.varying.stacks import StackSizes
 
 SHRINK = 0.8
 FOLLOWED = 6
@@ -35,7 +35,7 @@ def perturbed_starts(
 
 def stabilised(blocks: HarmonicBlocks, theta: FloatArray) -> FloatArray:
     """θ with all A_i multiplied by powers of 0.8 until the model is stable over a scheduling period."""
-    sizes: AffineSizes = blocks.sizes
+    sizes: StackSizes = blocks.sizes
     end = sizes.shapes[0][0] * sizes.order**2
     while not blocks.stable(theta):
         theta = np.concatenate([SHRINK * theta[:end], theta[end:]])

@@ -1,14 +1,16 @@
-"""How well a model reproduces a record along varying scheduling, and how far its output is known."""
+"""How well a model reproduces a record along varying scheduling."""
 
 from dataclasses import dataclass
+from typing import cast
 
 import numpy as np
 
 from identification.arrays import FloatArray
 from identification.errors import RangeError, ShapeError
+from identification.models.model import Model
 from identification.models.recursion import propagate
-from identification.varying.affine_estimate import AffineEstimate
-from identification.varying.affine_state_space import AffineStateSpace, best_fit_rate, variance_accounted_for
+from identification.models.state_space import StateSpaceStructure
+from identification.varying.rates import best_fit_rate, variance_accounted_for
 from identification.varying.records import VaryingRecord
 
 RANK = 1e-10
@@ -24,7 +26,7 @@ class Reproduction:
     variance_accounted_for: float
 
 
-def reproduced(model: AffineStateSpace, record: VaryingRecord) -> Reproduction:
+def reproduced(model: Model, record: VaryingRecord) -> Reproduction:
     """The simulation along a record; a few samples at its beginning tell the state that it starts from.
 
         x̂(0) = arg min Σ_t ‖y(t) − ŷ(t) − C(t) Φ(t) x(0)‖²,   Φ(t) = A(t−1) ⋯ A(0)
@@ -33,13 +35,13 @@ def reproduced(model: AffineStateSpace, record: VaryingRecord) -> Reproduction:
     an output that does not vary.
     """
     require_same_channels(model, record)
-    forced = model.simulate(record.input, record.scheduling)
-    a, _, c, _ = model.frozen(record.scheduling)
-    n = model.order
+    zeta, structure = model.coefficients(record.scheduling), cast(StateSpaceStructure, model.structure)
+    forced = structure.along(zeta, record.input).output
+    (a, _, c, _), n = structure.matrices(zeta), structure.order
     with np.errstate(over="ignore", invalid="ignore"):
         states = propagate(a, np.zeros((n, len(record), n)), np.eye(n))[:, :-1]
         free = (c @ states[..., None])[..., 0]
-    if not np.all(np.isfinite(free)):
+    if not (np.all(np.isfinite(free)) and np.all(np.isfinite(forced))):
         raise RangeError("the model is unstable along this scheduling", "model")
     columns = free.reshape(n, -1).T
     start: FloatArray = np.asarray(np.linalg.lstsq(columns, (record.output - forced).ravel(), rcond=RANK)[0])
@@ -49,20 +51,15 @@ def reproduced(model: AffineStateSpace, record: VaryingRecord) -> Reproduction:
     )
 
 
-def require_same_channels(model: AffineStateSpace, record: VaryingRecord) -> None:
+def require_same_channels(model: Model, record: VaryingRecord) -> None:
     """Raises ShapeError unless a record has the channels of a model, and its sample time."""
-    own = (model.n_inputs, model.n_outputs, model.n_scheduling)
+    own = (model.structure.inputs, model.structure.outputs, len(model.variables))
     given = tuple(signal.shape[1] for signal in (record.input, record.output, record.scheduling))
     if own != given:
         raise ShapeError(f"the model has {own} inputs, outputs and scheduling signals, the record {given}", "record")
-    if abs(record.sample_time / model.sample_time - 1) > 1e-6:
+    step = model.structure.sample_time
+    if step is None or abs(record.sample_time / step - 1) > 1e-6:
         raise RangeError(
-            f"the record is sampled every {record.sample_time:g} s, the model every {model.sample_time:g} s",
+            f"the record is sampled every {record.sample_time:g} s, the model every {step} s",
             "sample_time",
         )
-
-
-def output_deviations(estimate: AffineEstimate, record: VaryingRecord) -> FloatArray:
-    """The Cramér–Rao bound on the standard deviation of ŷ(t) along a record from rest, (N, n_y)."""
-    covariance = estimate.output_covariance(record.input, record.scheduling)
-    return np.asarray(np.sqrt(np.maximum(np.einsum("tyy->ty", covariance), 0.0)))

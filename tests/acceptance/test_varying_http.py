@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 from app.files import csv_writer, mat_writer, npz_writer
+from benchmarks.affine_plant import AffinePlant
 from benchmarks.wind_turbine_plant import PLANT
-from identification.outcome import Outcome
-from identification.varying.affine_estimate import AffineEstimate
-from identification.varying.affine_parameters import AffineSizes
+from identification.along import simulate_along
+from identification.models.model import Model
+from identification.varying.stacks import StackSizes
 from tests.support import varying
 from tests.support.api import Api, Json
 from tests.support.responses import complex_array
@@ -160,8 +161,8 @@ def test_white_excitation_gives_a_model_with_several_inputs_and_outputs(api: Api
     omega = np.array(response["frequenciesRadPerSecond"])
     error = complex_array(response["response"]) - truth.frequency_response(np.array([point]), omega)[0, :, 1, 0]
     assert 0.05 < np.sqrt(np.mean(error.real**2 / np.array(response["realVariance"]))) < 3
-    assert [one["function"] for one in found["varying"]["eigenvalues"]] == ["1", "load", "speed"]
-    of_speed = complex_array(found["varying"]["eigenvalues"][2]["eigenvalues"])
+    assert [one["function"] for one in found["varying"]["eigenvalues"]] == ["1", "speed", "load"]
+    of_speed = complex_array(found["varying"]["eigenvalues"][1]["eigenvalues"])
     assert np.allclose(np.sort_complex(of_speed), np.sort_complex(np.linalg.eigvals(truth.a[2])), atol=0.05)
 
 
@@ -186,22 +187,23 @@ def test_what_was_kept_of_several_variables_is_the_model_again(api: Api, cox: tu
     error = np.array(data["outputs"]).T - varying.cox_plant().simulate(u, p)
     deviation = (np.array(data["upper95"]) - np.array(data["lower95"])).T / 2 / 1.96
     assert 0.2 < np.mean(error[5:] ** 2 / deviation[5:] ** 2) < 3
-    expected = np.sqrt(np.einsum("tyy->ty", by_names(model).output_covariance(u, p)))
+    expected = simulate_along(by_names(model), u, p).deviation
     assert np.allclose(deviation, expected, rtol=1e-3, atol=1e-9)
 
 
-def by_names(model: Json) -> AffineEstimate:
+def by_names(model: Json) -> Model:
     """The model of a document, its parameters put in place by their names: B[0,1](1,2) is of the second variable."""
-    sizes = AffineSizes.of(varying.cox_plant())
+    sizes = StackSizes.of(varying.cox_plant().matrices)
     numbers = sizes.split(np.arange(sizes.size, dtype=float))
     places = []
     for name in model["parameterNames"]:
         letter, label, row, column = re.fullmatch(r"([ABCD])\[([01],[01])\]\((\d),(\d)\)", name).groups()
         function = {"0,0": 0, "1,0": 1, "0,1": 2}[label]
         places.append(int(numbers["ABCD".index(letter)][function, int(row) - 1, int(column) - 1]))
-    back = np.argsort(places)
-    covariance = np.array(model["covariance"])[np.ix_(back, back)]
-    return AffineEstimate(sizes.model(np.array(model["theta"])[back], 1.0), Outcome("converged"), (), covariance)
+    plant = AffinePlant(*sizes.split(np.array(model["theta"])[np.argsort(places)]))
+    first = plant.model()
+    assert np.allclose(first.theta, np.array(model["theta"]))
+    return plant.model(np.array(model["covariance"]))
 
 
 def test_coloured_scheduling_breaks_an_assumption_and_is_said(api: Api, cox: tuple[Json, list[str]]) -> None:

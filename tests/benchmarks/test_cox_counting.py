@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from benchmarks.affine_plant import with_constant
 from benchmarks.cox_counting import countings, one_by_one, products, reduced_parameters
-from identification.scheduling import with_constant
 from identification.varying.correlation_analysis import WhiteExcitation
 from identification.varying.sub_markov import every_word
 from tests.support.random_state_space import random_affine, white_record

@@ -5,10 +5,8 @@ import numpy as np
 from benchmarks.wind_turbine import NAMES, Runs, batch, bound, coverage, efficiency, summary, three_eigenvalues
 from benchmarks.wind_turbine_pictures import Cloud, ellipse, pictures
 from benchmarks.wind_turbine_plant import PLANT
-from identification.outcome import Outcome
-from identification.varying.affine_estimate import AffineEstimate
 
-TRUTH, _ = three_eigenvalues(AffineEstimate(PLANT, Outcome("converged"), ()))
+TRUTH, _ = three_eigenvalues(PLANT.model())
 
 
 def test_figures_and_pictures_of_a_few_runs() -> None:

@@ -9,19 +9,21 @@ import numpy as np
 import pytest
 
 import identification.varying
+from benchmarks.affine_plant import AffinePlant
+from identification.estimates import Estimate
+from identification.models.state_space_model import stacks
 from identification.registry import discover
-from identification.varying.affine_estimate import AffineEstimate
-from identification.varying.affine_parameters import AffineSizes
-from identification.varying.affine_state_space import AffineStateSpace, variance_accounted_for
+from identification.varying.rates import variance_accounted_for
 from identification.varying.records import VaryingRecord
-from tests.identification.varying.models import periodic_record, random_model
+from identification.varying.stacks import StackSizes
+from tests.identification.varying.models import output_along, periodic_record, random_model
 
 VARYING = discover(identification.varying)
 named = pytest.mark.parametrize("plug_in", VARYING.values(), ids=lambda plug_in: plug_in.kind)
 
 
 @cache
-def plant() -> AffineStateSpace:
+def plant() -> AffinePlant:
     model = random_model(np.random.default_rng(11))
     return dataclasses.replace(model, c=model.c * np.array([1.0, 0.0])[:, None, None])
 
@@ -31,13 +33,13 @@ def record() -> VaryingRecord:
     return periodic_record(plant(), np.random.default_rng(12), 120, 12, 20, noise=0.01)
 
 
-def estimated(plug_in: Any, **options: Any) -> AffineEstimate:
+def estimated(plug_in: Any, **options: Any) -> Estimate:
     """What the example finds, with a start where the estimator needs one."""
     needed = inspect.signature(plug_in.estimate).parameters.get("start")
     if needed is not None and needed.default is inspect.Parameter.empty:
-        model = plant()
-        options["start"] = dataclasses.replace(model, a=0.98 * model.a, b=1.02 * model.b)
-    found: AffineEstimate = plug_in.example().estimate(record(), 2, **options)
+        truth = plant()
+        options["start"] = dataclasses.replace(truth, a=0.98 * truth.a, b=1.02 * truth.b).model()
+    found: Estimate = plug_in.example().estimate(record(), 2, **options)
     return found
 
 
@@ -62,13 +64,12 @@ def test_it_finds_the_plant_the_same_every_time(plug_in: Any) -> None:
     told: list[tuple[float, str]] = []
     found = estimated(plug_in, progress=lambda fraction, message: told.append((fraction, message)))
     again = estimated(plug_in)
-    assert np.array_equal(found.model.a, again.model.a)
-    assert np.array_equal(found.model.d, again.model.d)
+    assert np.array_equal(found.model.theta, again.model.theta)
     assert found.outcome.ok
-    assert (found.model.variables, found.model.sample_time) == ((), 1.0)
+    assert found.model.structure.sample_time == 1.0
     generator = np.random.default_rng(13)
     u, p = generator.standard_normal((500, 1)), generator.uniform(-1, 1, (500, 1))
-    assert variance_accounted_for(plant().simulate(u, p), found.model.simulate(u, p)) > 99
+    assert variance_accounted_for(plant().simulate(u, p), output_along(found.model, u, p)) > 99
     assert told
     assert all(0 <= fraction <= 1 and message for fraction, message in told)
     assert [fraction for fraction, _ in told] == sorted(fraction for fraction, _ in told)
@@ -77,10 +78,11 @@ def test_it_finds_the_plant_the_same_every_time(plug_in: Any) -> None:
 @named
 def test_a_covariance_has_the_rank_of_what_can_be_known(plug_in: Any) -> None:
     found = estimated(plug_in)
-    if found.covariance is None:
+    covariance = found.model.covariance
+    if covariance is None:
         return
-    scale = np.sqrt(np.diag(found.covariance))
-    values = np.linalg.eigvalsh(found.covariance / np.outer(scale, scale))
-    assert np.allclose(found.covariance, found.covariance.T)
+    scale = np.sqrt(np.diag(covariance))
+    values = np.linalg.eigvalsh(covariance / np.outer(scale, scale))
+    assert np.allclose(covariance, covariance.T)
     assert values.min() > -1e-9
-    assert int((values > 1e-9 * values.max()).sum()) == AffineSizes.of(found.model).free
+    assert int((values > 1e-9 * values.max()).sum()) == StackSizes.of(stacks(found.model)).free

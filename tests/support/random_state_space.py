@@ -4,8 +4,8 @@ from itertools import product
 
 import numpy as np
 
+from benchmarks.affine_plant import AffinePlant
 from identification.arrays import FloatArray
-from identification.varying.affine_state_space import AffineStateSpace
 from identification.varying.records import VaryingRecord
 
 
@@ -16,7 +16,7 @@ def random_affine(
     n_inputs: int = 2,
     n_outputs: int = 2,
     contraction: float = 0.9,
-) -> tuple[AffineStateSpace, FloatArray]:
+) -> tuple[AffinePlant, FloatArray]:
     """A model and P with A(p)ᵀ P A(p) ⪯ contraction² P on [−1, 1]^n_p, normal entries otherwise.
 
     The largest norm of A(p) is at a vertex; scaled to `contraction`, then the state coordinates are changed.
@@ -28,10 +28,10 @@ def random_affine(
     at_vertices = a[0] + np.einsum("vk,kij->vij", vertices, a[1:])
     a *= contraction / np.linalg.norm(at_vertices, 2, axis=(1, 2)).max()
     basis = np.linalg.qr(rng.standard_normal((order, order)))[0] * rng.uniform(0.5, 2.0, order)
-    return AffineStateSpace(a, b, c, d, 1.0).transformed(basis), basis.T @ basis
+    return AffinePlant(a, b, c, d, 1.0).transformed(basis), basis.T @ basis
 
 
-def white_record(model: AffineStateSpace, rng: np.random.Generator, samples: int, level: float) -> VaryingRecord:
+def white_record(model: AffinePlant, rng: np.random.Generator, samples: int, level: float) -> VaryingRecord:
     """Uniform white input, binary white scheduling ±0.9, white noise at `level` dB below the output [Cox2018, 5.1]."""
     u = rng.uniform(-1.0, 1.0, (samples, model.n_inputs))
     p = rng.choice([-0.9, 0.9], (samples, model.n_scheduling))
@@ -39,7 +39,7 @@ def white_record(model: AffineStateSpace, rng: np.random.Generator, samples: int
 
 
 def noisy_record(
-    model: AffineStateSpace, u: FloatArray, p: FloatArray, rng: np.random.Generator, level: float
+    model: AffinePlant, u: FloatArray, p: FloatArray, rng: np.random.Generator, level: float
 ) -> VaryingRecord:
     """The response to u (N, n_u) along p (N, n_p) with white noise `level` dB below each output; none at infinity."""
     y = model.simulate(u, p)
@@ -47,7 +47,7 @@ def noisy_record(
     return VaryingRecord(u, y + deviation * rng.standard_normal(y.shape), p, model.sample_time)
 
 
-def slow_record(model: AffineStateSpace, rng: np.random.Generator, samples: int = 200) -> VaryingRecord:
+def slow_record(model: AffinePlant, rng: np.random.Generator, samples: int = 200) -> VaryingRecord:
     """The noise-free validation record of [Cox2018, 5.1], for two inputs."""
     t = np.arange(1, samples + 1)
     i = np.arange(1, model.n_scheduling + 1)

@@ -2,10 +2,10 @@
 
 import numpy as np
 
+from benchmarks.affine_plant import AffinePlant
 from benchmarks.wind_turbine_plant import PLANT, scheduling
 from identification.arrays import FloatArray
 from identification.scheduling import SchedulingVariable
-from identification.varying.affine_state_space import AffineStateSpace
 from tests.support.api import Json
 
 PERIOD, PERIODS, NOISE = 120, 25, 0.1
@@ -29,14 +29,14 @@ COX: Json = {
 Signals = tuple[FloatArray, FloatArray, FloatArray]
 
 
-def cox_plant() -> AffineStateSpace:
+def cox_plant() -> AffinePlant:
     """Two inputs, two outputs, two scheduling variables, stable for all |p_i| ≤ 1; D = 0."""
     g = np.random.default_rng(4)
     a = g.standard_normal((3, 2, 2))
     a *= (np.array([0.6, 0.15, 0.15]) / np.linalg.norm(a, 2, axis=(1, 2)))[:, None, None]
     b, c = g.standard_normal((2, 3, 2, 2))
     variables = tuple(SchedulingVariable(name, "", -1.0, 1.0) for name in ("load", "speed"))
-    return AffineStateSpace(a, b, c, np.zeros((3, 2, 2)), 1.0, variables)
+    return AffinePlant(a, b, c, np.zeros((3, 2, 2)), 1.0, variables)
 
 
 def turbine(seed: int = 1, noise: float = NOISE, period: int = PERIOD, periods: int = PERIODS) -> Signals:
@@ -49,16 +49,14 @@ def turbine(seed: int = 1, noise: float = NOISE, period: int = PERIOD, periods: 
     return measured(PLANT, u, scheduling(len(u)), noise, g)
 
 
-def white(model: AffineStateSpace, samples: int, seed: int = 1, noise: float = 0.02) -> Signals:
+def white(model: AffinePlant, samples: int, seed: int = 1, noise: float = 0.02) -> Signals:
     """White input and scheduling that never repeat themselves."""
     g = np.random.default_rng(seed)
     u, p = g.standard_normal((samples, model.n_inputs)), g.uniform(-1, 1, (samples, model.n_scheduling))
     return measured(model, u, p, noise, g)
 
 
-def measured(
-    model: AffineStateSpace, u: FloatArray, p: FloatArray, noise: float, generator: np.random.Generator
-) -> Signals:
+def measured(model: AffinePlant, u: FloatArray, p: FloatArray, noise: float, generator: np.random.Generator) -> Signals:
     """u, y with white noise, p."""
     y = model.simulate(u, p)
     return u, y + noise * generator.standard_normal(y.shape), p

@@ -18,7 +18,7 @@ from app.conversion.varying_comparisons import (
     varying_compared,
     varying_part,
 )
-from app.conversion.varying_models import kept_estimate
+from app.conversion.varying_models import kept_varying
 from app.conversion.varying_records import kept_record
 from app.jobs.task import TaskContext, TaskResult
 from app.schemas.comparisons import ComparedExperiment, Data
@@ -74,7 +74,7 @@ def _along(payload: dict[str, Any], place: int, experiment: Experiment, context:
     with field_named({**FIELDS, **fields}, f"/experimentIds/{place}"), within_doubles():
         record = kept_record(experiment, plant, context.arrays.get(payload["experiments"][place]["arrays"]))
         fitted = payload["data"][place] == "fitted"
-        return compare_varying(kept_estimate(model, plant), record, fitted, noise_of(model), **period_options(model))
+        return compare_varying(kept_varying(model, plant), record, fitted, noise_of(model), **period_options(model))
 
 
 def _compared(

@@ -1,4 +1,4 @@
-"""Identifies an affine state-space model from a record along varying scheduling."""
+"""Identifies a state-space model from a record along varying scheduling."""
 
 from typing import Any
 
@@ -23,7 +23,7 @@ from app.schemas.plants import Plant
 from app.schemas.plug_ins import PlugInDocument
 from app.schemas.varying import VaryingModelRequest, VaryingResult
 from identification.errors import NotIdentifiableError
-from identification.varying.affine_estimate import AffineEstimate
+from identification.estimates import Estimate
 from identification.varying.progress import within
 from identification.varying.records import VaryingRecord
 
@@ -42,7 +42,7 @@ def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
         first = _estimated(request.estimator, "/estimator", record, order, None, context)
         last = first
         if request.refinement is not None:
-            last = _estimated(request.refinement, "/refinement", record, first.model.order, first, context)
+            last = _estimated(request.refinement, "/refinement", record, first.model.structure.order, first, context)
         context.progress(0.9, "judging the model")
         return TaskResult(_document(plant, request, record, (first, last), payload, context))
 
@@ -52,19 +52,21 @@ def _estimated(
     pointer: str,
     record: VaryingRecord,
     order: int | None,
-    start: AffineEstimate | None,
+    start: Estimate | None,
     context: TaskContext,
-) -> AffineEstimate:
+) -> Estimate:
     """What an estimator finds; raises NotIdentifiableError when the record cannot determine the parameters."""
     options = {name: f"{pointer}/{to_camel(name)}" for name in type(asked).model_fields}
     fields = {**options, **dict.fromkeys(OF_DATA, "/experimentId"), "order": "/structure", "start": pointer}
     ends = (0.05, 0.5) if start is None else (0.5, 0.9)
     begun = {} if start is None else {"start": start.model}
     with field_named(fields, "/experimentId"):
-        found: AffineEstimate = asked.build().estimate(record, order, **begun, progress=within(context.progress, *ends))
+        found: Estimate = asked.build().estimate(record, order, **begun, progress=within(context.progress, *ends))
         if found.outcome.status == "not_identifiable":
             raise NotIdentifiableError(
-                f"this record does not determine a model of order {found.model.order}: {found.outcome.advice}", "record"
+                f"this record does not determine a model of order {found.model.structure.order}:"
+                f" {found.outcome.advice}",
+                "record",
             )
     return found
 
@@ -73,7 +75,7 @@ def _document(
     plant: Plant,
     request: VaryingModelRequest,
     record: VaryingRecord,
-    estimates: tuple[AffineEstimate, AffineEstimate],
+    estimates: tuple[Estimate, Estimate],
     payload: dict[str, Any],
     context: TaskContext,
 ) -> dict[str, Any]:
@@ -86,7 +88,7 @@ def _document(
         "structure": structure_document(requested_structure(plant, request), estimate.model),
         "basis": affine_basis(len(plant.scheduling_variables)).as_json(),
         "coefficientBases": [],
-        **model_parts(estimate),
+        **model_parts(estimate.model, estimate.outcome, estimate.tests),
         "localModels": [],
         **dict.fromkeys(("localEstimator", "lpvEstimator", "spectralEstimator", "parentId", "seed")),
         "experimentIds": [request.experiment_id],
@@ -100,25 +102,25 @@ def _result(
     plant: Plant,
     request: VaryingModelRequest,
     record: VaryingRecord,
-    estimates: tuple[AffineEstimate, AffineEstimate],
+    estimates: tuple[Estimate, Estimate],
     payload: dict[str, Any],
     context: TaskContext,
 ) -> VaryingResult:
     first, last = estimates
     used = [asked.build() for asked in (request.estimator, request.refinement) if asked is not None]
     steady = used_periods(record, used)
-    fits = [fit_document(last, record, request.experiment_id, "fitted")]
+    fits = [fit_document(last.model, record, request.experiment_id, "fitted")]
     for given in payload["heldOut"]:
         other = Experiment.model_validate(given["document"])
         held_out = kept_record(other, plant, context.arrays.get(given["arrays"]))
-        fits.append(fit_document(last, held_out, other.id, "heldOut"))
+        fits.append(fit_document(last.model, held_out, other.id, "heldOut"))
     return VaryingResult(
         estimator=request.estimator,
         refinement=request.refinement,
         starting_outcome="" if request.refinement is None else f"{first.outcome.status}: {first.outcome.advice}",
         steady=None if steady is None else steady_document(steady),
-        eigenvalues=eigenvalue_documents(last),
-        noise_spectrum=noise_document(last, record, steady),
+        eigenvalues=eigenvalue_documents(last.model),
+        noise_spectrum=noise_document(last.model, record, steady),
         fits=fits,
-        warnings=list(getattr(first, "warnings", ())),
+        warnings=[] if first.found is None else list(first.found.warnings),
     )

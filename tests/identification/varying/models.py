@@ -2,23 +2,25 @@
 
 import numpy as np
 
+from benchmarks.affine_plant import AffinePlant
+from identification.along import simulate_along
 from identification.arrays import FloatArray
-from identification.varying.affine_state_space import AffineStateSpace
+from identification.models.model import Model
 from identification.varying.records import VaryingRecord
 
 
 def random_model(
     generator: np.random.Generator, order: int = 2, n_p: int = 1, n_u: int = 1, n_y: int = 1
-) -> AffineStateSpace:
+) -> AffinePlant:
     """Stable for |p_i| ≤ 1: the spectral norms of the A_i add up to less than one."""
     a = generator.standard_normal((n_p + 1, order, order))
     norms = np.linalg.norm(a, 2, axis=(1, 2))
     a = a / norms[:, None, None] * np.concatenate([[0.6], np.full(n_p, 0.3 / n_p)])[:, None, None]
     shapes = ((n_p + 1, order, n_u), (n_p + 1, n_y, order), (n_p + 1, n_y, n_u))
-    return AffineStateSpace(a, *(generator.standard_normal(shape) for shape in shapes), 1.0)
+    return AffinePlant(a, *(generator.standard_normal(shape) for shape in shapes))
 
 
-def step_by_step(model: AffineStateSpace, u: FloatArray, p: FloatArray, x: FloatArray) -> FloatArray:
+def step_by_step(model: AffinePlant, u: FloatArray, p: FloatArray, x: FloatArray) -> FloatArray:
     """The output by the equations, one sample after the other."""
     rows = []
     for t in range(len(u)):
@@ -30,7 +32,7 @@ def step_by_step(model: AffineStateSpace, u: FloatArray, p: FloatArray, x: Float
 
 
 def periodic_record(
-    model: AffineStateSpace,
+    model: AffinePlant,
     generator: np.random.Generator,
     period: int,
     scheduling_period: int,
@@ -43,3 +45,8 @@ def periodic_record(
     p = np.tile(p, (periods * period // scheduling_period, 1))
     y = model.simulate(u, p)
     return VaryingRecord(u, y + noise * y.std(axis=0) * generator.standard_normal(y.shape), p, 1.0, period)
+
+
+def output_along(model: Model, u: FloatArray, p: FloatArray) -> FloatArray:
+    """The output of a model from rest."""
+    return simulate_along(model, u, p, covariance_known=False).output

@@ -8,10 +8,8 @@ import pytest
 
 from benchmarks.wind_turbine_plant import PLANT
 from identification.errors import MisuseError
-from identification.outcome import Outcome
-from identification.varying.affine_estimate import AffineEstimate
 from identification.varying.comparison import VaryingComparison, compare_varying
-from identification.varying.output_error import output_error
+from identification.varying.output_error import OutputError
 from identification.varying.periodic_likelihood import PeriodicLikelihood
 from identification.varying.records import VaryingRecord
 from tests.support import varying
@@ -35,7 +33,10 @@ def pairs() -> list[tuple[VaryingComparison, VaryingComparison]]:
     for seed in range(0, 80, 2):
         estimate = PeriodicLikelihood().estimate(periodic(seed), 2)
         found.append(
-            (compare_varying(estimate, periodic(seed), True), compare_varying(estimate, periodic(seed + 1), False))
+            (
+                compare_varying(estimate.model, periodic(seed), True),
+                compare_varying(estimate.model, periodic(seed + 1), False),
+            )
         )
     return found
 
@@ -55,9 +56,9 @@ def test_the_lack_of_fit_has_its_distribution(which: int) -> None:
 def test_free_records_are_tested_over_time() -> None:
     tests: dict[tuple[str, bool], list[float]] = {}
     for seed in range(0, 50, 2):
-        estimate = output_error(varying.cox_plant(), free(seed))
+        estimate = OutputError().estimate(free(seed), None, varying.cox_plant().model())
         for record, fitted in ((free(seed), True), (free(seed + 1), False)):
-            found = compare_varying(estimate, record, fitted, NOISE)
+            found = compare_varying(estimate.model, record, fitted, NOISE)
             assert found.lack_of_fit is None
             for test in found.tests:
                 tests.setdefault((test.name, fitted), []).append(test.p_value)
@@ -72,16 +73,16 @@ def test_free_records_are_tested_over_time() -> None:
 def test_what_is_missing_is_seen_in_both() -> None:
     estimate = PeriodicLikelihood().estimate(periodic(0), 2)
     louder = replace(periodic(1), output=1.05 * periodic(1).output)
-    found = compare_varying(estimate, louder, False)
+    found = compare_varying(estimate.model, louder, False)
     assert found.lack_of_fit is not None
     assert found.lack_of_fit.p_value < 1e-9
-    other = output_error(varying.cox_plant(), free(0))
+    other = OutputError().estimate(free(0), None, varying.cox_plant().model())
     record = replace(free(1), output=1.02 * free(1).output)
-    assert compare_varying(other, record, False, NOISE).tests[-1].p_value < 1e-9
+    assert compare_varying(other.model, record, False, NOISE).tests[-1].p_value < 1e-9
 
 
 def test_held_out_data_need_a_covariance() -> None:
-    bare = AffineEstimate(PLANT, Outcome("converged"), ())
+    bare = PLANT.model()
     with pytest.raises(MisuseError, match="no covariance"):
         compare_varying(bare, periodic(1), False)
     assert compare_varying(bare, periodic(1), True).variance_accounted_for > 98

@@ -4,11 +4,13 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
+from identification.along import simulate_along
 from identification.errors import MisuseError, NotIdentifiableError, RangeError
-from identification.varying.affine_state_space import best_fit_rate, variance_accounted_for
 from identification.varying.correlation_assumptions import A1, A2, A3
 from identification.varying.correlation_realisation import CorrelationRealisation
+from identification.varying.rates import best_fit_rate, variance_accounted_for
 from identification.varying.records import VaryingRecord
+from tests.identification.varying.models import output_along
 from tests.support.random_state_space import noisy_record, random_affine, slow_record, white_record
 
 
@@ -18,7 +20,7 @@ def plant():
 
 
 def quality(found, held_out):
-    simulated = found.model.simulate(held_out.input, held_out.scheduling)
+    simulated = output_along(found.model, held_out.input, held_out.scheduling)
     return best_fit_rate(held_out.output, simulated), variance_accounted_for(held_out.output, simulated)
 
 
@@ -28,17 +30,17 @@ def test_the_study_in_small(plant):
     published = CorrelationRealisation(corrections=0, refinement=False).estimate(record, 4)
     assert quality(published, held_out)[1] > 90
     assert quality(published, held_out)[1] < 99.5
-    assert published.covariance is None
+    assert published.model.covariance is None
     reduced = CorrelationRealisation(refinement=False).estimate(record)
     full = CorrelationRealisation(refinement=False, hankel="full").estimate(record)
     for found in (reduced, full):
-        assert found.model.order == 4
-        assert found.parameters == "correlation"
+        assert found.model.structure.order == 4
+        assert found.found.parameters == "correlation"
         assert found.outcome.ok
         assert quality(found, held_out)[0] > 95
         assert quality(found, held_out)[1] > 99.9
-    assert len(reduced.rows) == len(reduced.columns) == 10
-    assert len(full.rows) == 84
+    assert len(reduced.found.rows) == len(reduced.found.columns) == 10
+    assert len(full.found.rows) == 84
 
 
 def test_noise_free_data_give_the_plant_back(plant):
@@ -65,16 +67,16 @@ def test_signals_that_are_not_white_lead_to_least_squares(small):
     record = drifting_record(small, np.random.default_rng(4))
     held_out = white_record(small, np.random.default_rng(5), 300, np.inf)
     found = CorrelationRealisation().estimate(record, 2)
-    assert found.parameters == "least_squares"
+    assert found.found.parameters == "least_squares"
     assert {test.name for test in found.tests if test.p_value < 1e-3} == {A2, A3}
-    assert len(found.warnings) == 2
-    assert all("found by least squares" in text for text in found.warnings)
+    assert len(found.found.warnings) == 2
+    assert all("found by least squares" in text for text in found.found.warnings)
     assert quality(found, held_out)[1] > 99.8
     full = CorrelationRealisation(hankel="full", refinement=False).estimate(record, 2)
     alike = drifting_record(small, np.random.default_rng(14))
     assert quality(full, alike)[1] > 98
     forced = CorrelationRealisation(parameters="correlation", corrections=0, refinement=False).estimate(record, 2)
-    assert "biased" in forced.warnings[0]
+    assert "biased" in forced.found.warnings[0]
     unforced = CorrelationRealisation(corrections=0, refinement=False).estimate(record, 2)
     assert quality(unforced, held_out)[1] > quality(forced, held_out)[1] + 5
 
@@ -88,23 +90,23 @@ def test_coloured_noise_is_reported(small):
         for method in (CorrelationRealisation(), CorrelationRealisation(refinement=False)):
             found = method.estimate(record, 2)
             assert {test.name for test in found.tests if test.p_value < 1e-3} == broken
-            assert [text[:22] for text in found.warnings] == ["the noise is not white"] * len(broken)
+            assert [text[:22] for text in found.found.warnings] == ["the noise is not white"] * len(broken)
 
 
 def test_the_covariance_belongs_to_the_model(small):
     record = white_record(small, np.random.default_rng(8), 2000, 20.0)
     found = CorrelationRealisation().estimate(record, 2)
     held_out = white_record(small, np.random.default_rng(9), 100, np.inf)
-    error = found.model.simulate(held_out.input, held_out.scheduling) - held_out.output
-    deviation = np.sqrt(found.output_covariance(held_out.input, held_out.scheduling)[:, 0, 0])
+    error = output_along(found.model, held_out.input, held_out.scheduling) - held_out.output
+    deviation = simulate_along(found.model, held_out.input, held_out.scheduling).deviation[:, 0]
     assert 0.3 < np.sqrt(np.mean((error[1:, 0] / deviation[1:]) ** 2)) < 2
 
 
 def test_it_is_the_same_every_time(small):
     record = white_record(small, np.random.default_rng(10), 500, 20.0)
     one, other = (CorrelationRealisation.example().estimate(record, 2) for _ in range(2))
-    assert np.array_equal(one.model.a, other.model.a)
-    assert np.array_equal(one.singular_values, other.singular_values)
+    assert np.array_equal(one.model.theta, other.model.theta)
+    assert np.array_equal(one.found.singular_values, other.found.singular_values)
 
 
 def test_a_model_that_explains_nothing_says_so(plant):

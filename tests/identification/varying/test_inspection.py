@@ -51,16 +51,16 @@ def test_what_is_wrong_is_said() -> None:
 
 def test_a_record_that_begins_anywhere_is_reproduced() -> None:
     clean = noise_free("white", 1000)
-    late = reproduced(PLANT, clean.part(300, 900))
+    late = reproduced(PLANT.model(), clean.part(300, 900))
     assert late.variance_accounted_for == pytest.approx(100, abs=1e-9)
     assert np.allclose(late.output, clean.output[300:900], atol=1e-9)
     assert np.linalg.norm(late.initial_state) > 0.1
     with pytest.raises(ShapeError, match="the record"):
-        reproduced(PLANT, VaryingRecord(clean.input, clean.output, np.tile(clean.scheduling, 2), 1.0))
+        reproduced(PLANT.model(), VaryingRecord(clean.input, clean.output, np.tile(clean.scheduling, 2), 1.0))
     with pytest.raises(RangeError, match="sampled every 2 s"):
-        reproduced(PLANT, replace(clean, sample_time=2.0))
+        reproduced(PLANT.model(), replace(clean, sample_time=2.0))
     with pytest.raises(RangeError, match="unstable"):
-        reproduced(replace(PLANT, a=2 * PLANT.a), noise_free("white", 5000))
+        reproduced(replace(PLANT, a=2 * PLANT.a).model(), noise_free("white", 5000))
 
 
 def test_both_noise_spectra_are_those_of_the_noise() -> None:

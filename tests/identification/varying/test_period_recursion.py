@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
+from benchmarks.affine_plant import with_constant
 from identification.varying import period_recursion
-from identification.varying.affine_parameters import AffineSizes
 from identification.varying.harmonic_blocks import HarmonicBlocks
 from identification.varying.period_recursion import PeriodRecursion, periodic_response
+from identification.varying.stacks import StackSizes
 from tests.identification.varying.models import random_model
 
 
@@ -24,10 +25,10 @@ def test_the_recursion_closes_the_period(samples: int) -> None:
 def test_a_period_that_is_stated_longer_changes_nothing(size: float) -> None:
     generator = np.random.default_rng(3)
     model = random_model(generator, 2, 2, 2, 2)
-    sizes = AffineSizes.of(model)
+    sizes = StackSizes.of(model.matrices)
     theta = sizes.join((size * model.a, model.b, model.c, model.d))
     u, p = generator.standard_normal((42, 2)), np.tile(generator.uniform(-1, 1, (6, 2)), (7, 1))
-    short, long = (HarmonicBlocks(sizes, u, p, period) for period in (6, 42))
+    short, long = (HarmonicBlocks(sizes, u, with_constant(p), period) for period in (6, 42))
     assert short.stable(theta) is long.stable(theta) is (size == 1.0)
     assert 2 * 6 <= short.largest_block < 2 * 42
     for of_short, of_long in zip(short.output_and_jacobian(theta), long.output_and_jacobian(theta), strict=True):
@@ -42,7 +43,7 @@ def test_states_one_at_a_time_or_together(monkeypatch: pytest.MonkeyPatch) -> No
     generator = np.random.default_rng(4)
     model = random_model(generator, 3, 1, 2, 1)
     u, p = generator.standard_normal((20, 2)), generator.uniform(-1, 1, (20, 1))
-    response = periodic_response((model.a, model.b, model.c, model.d), u, p)
+    response = periodic_response(model.matrices, u, with_constant(p))
     together = response.through()
     for at_once in (1, 2 * response.signals.size * 3):
         monkeypatch.setattr(period_recursion, "AT_ONCE", at_once)

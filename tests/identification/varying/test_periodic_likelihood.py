@@ -7,24 +7,23 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from benchmarks.affine_plant import AffinePlant, with_constant
 from benchmarks.wind_turbine_plant import PLANT, SIZES, THETA, aligned, cramer_rao, disturbed, noise_free
 from benchmarks.wind_turbine_plant import validation_fits as fits
+from identification.along import simulate_along
 from identification.errors import MisuseError, NotIdentifiableError, ShapeError
 from identification.lti.rational_fit import RationalFit
 from identification.models.rational import RationalStructure
-from identification.outcome import Outcome
-from identification.scheduling import SchedulingVariable
 from identification.signals import TimeRecord
 from identification.spectral.periodic_average import PeriodicAverage
-from identification.varying.affine_estimate import AffineEstimate
-from identification.varying.affine_parameters import AffineSizes, balanced
-from identification.varying.affine_state_space import variance_accounted_for
-from identification.varying.frozen import affine_model
+from identification.varying.eigenvalues import eigenvalue_covariance, eigenvalues
 from identification.varying.harmonic_blocks import HarmonicBlocks
 from identification.varying.harmonic_noise import harmonic_noise
 from identification.varying.periodic_likelihood import PeriodicLikelihood
+from identification.varying.rates import variance_accounted_for
 from identification.varying.records import VaryingRecord, steady_periods
-from tests.identification.varying.models import periodic_record, random_model
+from identification.varying.stacks import StackSizes, balanced
+from tests.identification.varying.models import output_along, periodic_record, random_model
 
 SAMPLES = 10_000
 
@@ -34,11 +33,11 @@ SAMPLES = 10_000
 def test_blocks_give_the_steady_state_and_its_derivatives(seed: int, periods: tuple[int, int], order: int) -> None:
     generator = np.random.default_rng(seed)
     model = random_model(generator, order, 2, 2, 2)
-    sizes = AffineSizes.of(model)
-    theta = sizes.join((model.a, model.b, model.c, model.d))
+    sizes = StackSizes.of(model.matrices)
+    theta = sizes.join(model.matrices)
     record = periodic_record(model, generator, *periods, periods=20 + 800 // periods[0])
     one = slice(0, periods[0])
-    blocks = HarmonicBlocks(sizes, record.input[one], record.scheduling[one], periods[1])
+    blocks = HarmonicBlocks(sizes, record.input[one], with_constant(record.scheduling[one]), periods[1])
     output, jacobian = blocks.output_and_jacobian(theta)
     assert np.allclose(output, np.fft.fft(record.output[-periods[0] :], axis=0)[blocks.lines], atol=1e-9)
     assert np.allclose(output, blocks.output(theta), atol=1e-10)
@@ -57,7 +56,8 @@ def test_blocks_give_the_steady_state_and_its_derivatives(seed: int, periods: tu
 def test_balancing_changes_the_basis_only() -> None:
     model = random_model(np.random.default_rng(7), 3, 2, 2, 2)
     points, omega = np.zeros((1, 2)), np.linspace(0, np.pi, 7)
-    assert np.allclose(balanced(model).frequency_response(points, omega), model.frequency_response(points, omega))
+    same = AffinePlant(*balanced(model.matrices))
+    assert np.allclose(same.frequency_response(points, omega), model.frequency_response(points, omega))
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -68,7 +68,7 @@ def test_noise_free_data_give_the_model_back(seed: int) -> None:
     estimate = PeriodicLikelihood().estimate(record, model.order)
     u, p = generator.standard_normal((500, model.n_inputs)), generator.uniform(-1, 1, (500, model.n_scheduling))
     y = model.simulate(u, p)
-    assert np.abs(estimate.model.simulate(u, p) - y).max() < 1e-6 * np.abs(y).max()
+    assert np.abs(output_along(estimate.model, u, p) - y).max() < 1e-6 * np.abs(y).max()
     assert estimate.outcome.ok
 
 
@@ -96,10 +96,10 @@ def test_the_bound_is_reached(coloured: bool) -> None:
     information = np.linalg.inv(chart.T @ covariance @ chart)
     ratio = np.mean(np.einsum("ri,ij,rj->r", errors, information, errors)) / SIZES.free
     assert ratio == pytest.approx(1.03, abs=4 * np.sqrt(2 / (runs * SIZES.free)))
-    truth = AffineEstimate(PLANT, Outcome("converged"), (), covariance).eigenvalue_covariance()[0, 0]
-    stated = np.mean([estimate.eigenvalue_covariance()[0, 0] for estimate in estimates], axis=0)
+    truth = eigenvalue_covariance(PLANT.model(covariance))[0, 0]
+    stated = np.mean([eigenvalue_covariance(estimate.model)[0, 0] for estimate in estimates], axis=0)
     assert np.allclose(np.sqrt(np.diag(stated)), np.sqrt(np.diag(truth)), rtol=0.1)
-    values = np.array([estimate.model.eigenvalues()[0].imag.max() for estimate in estimates])
+    values = np.array([eigenvalues(estimate.model)[0].imag.max() for estimate in estimates])
     assert values.std() == pytest.approx(np.sqrt(truth[1, 1]), rel=4 / np.sqrt(2 * runs))
     assert np.mean([estimate.tests[0].p_value for estimate in estimates]) == pytest.approx(0.5, abs=0.15)
 
@@ -116,16 +116,14 @@ def test_the_stated_deviation_of_a_simulated_output_is_that_over_runs() -> None:
     clean = noise_free("multisine", SAMPLES)
     estimates = [PeriodicLikelihood(1).estimate(disturbed(clean, 0.1, False, generator), 2) for _ in range(60)]
     u, p = clean.input[:200], clean.scheduling[:200]
-    spread = np.std([estimate.model.simulate(u, p) for estimate in estimates], axis=0)[5:, 0]
-    stated = np.sqrt(estimates[0].output_covariance(u, p)[5:, 0, 0])
+    spread = np.std([output_along(estimate.model, u, p) for estimate in estimates], axis=0)[5:, 0]
+    stated = simulate_along(estimates[0].model, u, p).deviation[5:, 0]
     assert np.median(spread / stated) == pytest.approx(1, abs=0.2)
 
 
 def test_local_and_varying_experiments_of_one_plant_agree_within_their_covariances() -> None:
     generator = np.random.default_rng(5)
-    found = PeriodicLikelihood(1).estimate(disturbed(noise_free("multisine"), 0.1, False, generator), 2)
-    ranged = replace(found.model, variables=(SchedulingVariable("p", "", -1.0, 1.0),))
-    varying = affine_model(replace(found, model=ranged))
+    varying = PeriodicLikelihood(1).estimate(disturbed(noise_free("multisine"), 0.1, False, generator), 2).model
     omega = np.linspace(0.3, 2.8, 6)
     for point in (-0.6, 0.5):
         u = noise_free("multisine").input[:SAMPLES]
@@ -160,12 +158,12 @@ def test_a_start_of_another_method_is_taken() -> None:
     record = periodic_record(model, generator, 120, 12, 12, noise=0.01)
     unstable = replace(model, a=3 * model.a)
     for start in (model, unstable):
-        estimate = PeriodicLikelihood().estimate(record, 2, start=start)
+        estimate = PeriodicLikelihood().estimate(record, 2, start=start.model())
         assert estimate.outcome.ok
         assert estimate.tests[0].p_value > 1e-3
-    assert variance_accounted_for(record.output, estimate.model.simulate(record.input, record.scheduling)) > 99.9
+    assert variance_accounted_for(record.output, output_along(estimate.model, record.input, record.scheduling)) > 99.9
     with pytest.raises(ShapeError, match="the start has the sizes"):
-        PeriodicLikelihood().estimate(record, 3, start=model)
+        PeriodicLikelihood().estimate(record, 3, start=model.model())
 
 
 def test_misuse_is_refused() -> None:

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from benchmarks.affine_plant import AffinePlant
 from identification.errors import NotIdentifiableError, RangeError, ShapeError
-from identification.varying.affine_state_space import AffineStateSpace
 from identification.varying.correlation_analysis import WhiteExcitation
 from identification.varying.sub_markov import BasisSelection, ExactSubMarkov, SummedSubMarkov, every_word
 from identification.varying.sub_markov_least_squares import WordRegression
@@ -118,7 +118,7 @@ def short_response():
     rng = np.random.default_rng(5)
     step = np.array([[0.0, 1.0], [0.0, 0.0]])
     a = rng.standard_normal((3, 1, 1)) * step
-    return AffineStateSpace(
+    return AffinePlant(
         a, rng.standard_normal((3, 2, 2)), rng.standard_normal((3, 2, 2)), rng.standard_normal((3, 2, 2)), 1.0
     )
 

@@ -5,9 +5,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from identification.errors import RangeError, ShapeError
-from identification.scheduling import SchedulingVariable
-from identification.varying.affine_state_space import AffineStateSpace, best_fit_rate, variance_accounted_for
+from benchmarks.affine_plant import AffinePlant
+from identification.errors import RangeError
+from identification.varying.eigenvalues import eigenvalues
+from identification.varying.rates import best_fit_rate, variance_accounted_for
+from identification.varying.stacks import simulated, transformed
 from tests.identification.varying.models import random_model, step_by_step
 
 
@@ -18,58 +20,39 @@ def test_simulation_is_what_the_equations_say(seed: int, samples: int, order: in
     model = random_model(generator, order, n_p, 2, 2)
     u, p = generator.standard_normal((samples, 2)), generator.uniform(-1, 1, (samples, n_p))
     x = generator.standard_normal(order)
-    assert np.allclose(model.simulate(u, p, x), step_by_step(model, u, p, x), atol=1e-12)
+    psi = np.column_stack([np.ones(samples), p])
+    assert np.allclose(simulated(model.matrices, u, psi, x)[1], step_by_step(model, u, p, x), atol=1e-12)
 
 
 def test_runs_are_simulated_side_by_side() -> None:
     generator = np.random.default_rng(1)
     model = random_model(generator, 3, 2)
     u, p = generator.standard_normal((4, 50, 1)), generator.uniform(-1, 1, (4, 50, 2))
-    together = model.simulate(u, p)
+    psi = np.concatenate([np.ones((4, 50, 1)), p], axis=-1)
+    together = simulated(model.matrices, u, psi)[1]
     assert np.allclose(together, [model.simulate(u[i], p[i]) for i in range(4)])
-    shared = model.simulate(u, p[0])
+    shared = simulated(model.matrices, u, psi[0])[1]
     assert np.allclose(shared[2], model.simulate(u[2], p[0]))
-
-
-def test_noise_on_the_state_acts_one_sample_later() -> None:
-    model = random_model(np.random.default_rng(2))
-    noise = np.zeros((10, 2))
-    noise[3] = [1.0, 2.0]
-    p = np.zeros((10, 1))
-    output = model.simulate(np.zeros((10, 1)), p, state_noise=noise)
-    assert not output[:4].any()
-    assert output[4, 0] == pytest.approx(model.c[0, 0] @ noise[3])
 
 
 def test_another_state_basis_changes_no_response() -> None:
     generator = np.random.default_rng(3)
     model = random_model(generator, 3, 2, 2, 2)
-    other = model.transformed(generator.standard_normal((3, 3)))
+    other = AffinePlant(*transformed(model.matrices, generator.standard_normal((3, 3))))
     points, omega = generator.uniform(-1, 1, (5, 2)), np.linspace(0, np.pi, 7)
-    assert np.allclose(model.frequency_response(points, omega), other.frequency_response(points, omega))
-    assert np.allclose(np.sort_complex(model.eigenvalues()), np.sort_complex(other.eigenvalues()))
+    expected = model.frequency_response(points, omega)
+    assert np.allclose(other.frequency_response(points, omega), expected)
+    assert np.allclose(other.model().frequency_response(points, omega), expected)
+    found, back = eigenvalues(other.model()), [0, 2, 1]
+    assert np.allclose(np.sort_complex(found[back]), np.sort_complex(model.eigenvalues()))
 
 
 def test_the_frozen_response_is_that_of_a_sine_at_constant_scheduling() -> None:
-    model, omega = random_model(np.random.default_rng(4)), 0.7
+    plant, omega = random_model(np.random.default_rng(4)), 0.7
     t = np.arange(400)
-    y = model.simulate(np.cos(omega * t)[:, None], np.full((400, 1), 0.4))[:, 0]
-    g = model.frequency_response(np.array([[0.4]]), np.array([omega]))[0, 0, 0, 0]
+    y = plant.simulate(np.cos(omega * t)[:, None], np.full((400, 1), 0.4))[:, 0]
+    g = plant.model().frequency_response(np.array([[0.4]]), np.array([omega]))[0, 0, 0, 0]
     assert np.allclose(y[200:], (g * np.exp(1j * omega * t)).real[200:], atol=1e-9)
-
-
-def test_misuse_is_refused() -> None:
-    model = random_model(np.random.default_rng(5))
-    with pytest.raises(ShapeError, match="1 are needed"):
-        model.simulate(np.zeros((5, 1)), np.zeros((5, 2)))
-    with pytest.raises(ShapeError, match="c has shape"):
-        AffineStateSpace(model.a, model.b, model.c[:1], model.d, 1.0)
-    limited = AffineStateSpace(model.a, model.b, model.c, model.d, 1.0, (SchedulingVariable("p", "1", -1, 1),))
-    with pytest.raises(RangeError, match="outside its declared range"):
-        limited.simulate(np.zeros((5, 1)), np.full((5, 1), 1.2))
-    unstable = AffineStateSpace(1e3 * model.a, model.b, model.c, model.d, 1.0)
-    with pytest.raises(RangeError, match="unstable along p"):
-        unstable.simulate(np.ones((500, 1)), np.zeros((500, 1)))
 
 
 def test_fits_of_known_errors() -> None:
