@@ -2,9 +2,14 @@
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from app.report.numbers import point_label
+from identification.arrays import FloatArray
 from identification.scheduling import SchedulingVariable
 from identification.signals import OperatingPoint
+
+FREQUENCY = "frequency (Hz)"
 
 
 @dataclass(frozen=True)
@@ -45,3 +50,8 @@ class Axes:
 def labelled(name: str, unit: str) -> str:
     """A quantity with its unit in brackets."""
     return f"{name} ({unit})" if unit else name
+
+
+def hertz(omega: FloatArray | float) -> FloatArray:
+    """Frequencies in rad/s as a reader of a report wants them, f = ω/2π."""
+    return np.asarray(omega) / (2 * np.pi)

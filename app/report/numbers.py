@@ -15,7 +15,7 @@ def significant(value: float, digits: int = 3) -> str:
     magnitude = floor(log10(abs(float(f"{value:.{digits - 1}e}"))))
     if not -4 <= magnitude < 6:
         mantissa, _, exponent = f"{value:.{digits - 1}e}".partition("e")
-        return f"{mantissa}·10{_superscript(int(exponent))}".replace("-", "−")
+        return f"{mantissa}·10{superscript(int(exponent))}".replace("-", "−")
     return f"{value:.{max(digits - 1 - magnitude, 0)}f}".replace("-", "−")
 
 
@@ -25,7 +25,7 @@ def estimate(value: float, deviation: float) -> str:
         return significant(value)
     power = floor(log10(max(abs(value), deviation)))
     if not -4 <= power < 6:
-        return f"({estimate(value / 10.0**power, deviation / 10.0**power)})·10{_superscript(power)}"
+        return f"({estimate(value / 10.0**power, deviation / 10.0**power)})·10{superscript(power)}"
     places = max(1 - floor(log10(float(f"{deviation:.1e}"))), 0)
     return f"{value:.{places}f} ± {deviation:.{places}f}".replace("-", "−")
 
@@ -53,5 +53,6 @@ def point_label(point: tuple[float, ...], names: tuple[str, ...], units: tuple[s
     return ", ".join(parts).replace("-", "−")
 
 
-def _superscript(number: int) -> str:
+def superscript(number: int) -> str:
+    """A whole number in raised digits."""
     return str(number).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))

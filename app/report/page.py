@@ -1,14 +1,13 @@
-"""A report as one HTML file: style, plots and plotly.js inside, nothing fetched, the same bytes for the same report."""
+"""A report as one HTML file: style and plots inside, nothing fetched, the same bytes for the same report."""
 
-import json
 from dataclasses import dataclass
 from pathlib import Path
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
-from plotly.offline import get_plotlyjs
 
 from app.report.document import Plot, Report, Table
+from app.report.svg.draw import draw
 
 
 @dataclass
@@ -34,9 +33,9 @@ def render(report: Report) -> str:
     )
     environment.tests["plot"] = lambda block: isinstance(block, Plot)
     environment.tests["table"] = lambda block: isinstance(block, Table)
-    environment.filters["figure_json"] = figure_json
+    environment.filters["drawn"] = drawn
     template = environment.get_template("report.html.j2")
-    return template.render(report=report, numbering=_Numbering(), plotly=Markup(get_plotlyjs()))
+    return template.render(report=report, numbering=_Numbering())
 
 
 def write(report: Report, path: Path) -> Path:
@@ -46,8 +45,6 @@ def write(report: Report, path: Path) -> Path:
     return path
 
 
-def figure_json(plot: Plot) -> Markup:
-    """Data and layout for plotly.js, safe inside a script element."""
-    figure = json.loads(plot.figure.to_json(engine="json"))
-    figure["layout"].pop("template", None)
-    return Markup(json.dumps(figure, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c"))
+def drawn(plot: Plot, identifier: str) -> Markup:
+    """The figure of a plot as an svg element, all text in it escaped."""
+    return Markup(draw(plot.figure, identifier, plot.caption))

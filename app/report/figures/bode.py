@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 import plotly.graph_objects as go
 
-from app.report.axes import Axes, labelled
+from app.report.axes import FREQUENCY, Axes, hertz, labelled
 from app.report.document import Plot, Table
 from app.report.numbers import estimate, significant
 from app.report.style import NEUTRAL, add_band, add_truth, colour, dash, new_figure
@@ -36,7 +36,7 @@ def bode(
         _add_measured(figure, model, own, name, i)
         _add_model(figure, model, point, omega, name, i)
     figure.update_xaxes(type="log", dtick=1)
-    figure.update_xaxes(title="frequency (rad/s)", row=2, col=1)
+    figure.update_xaxes(title=FREQUENCY, row=2, col=1)
     figure.update_yaxes(type="log", title=axes.gain_unit, dtick=1, row=1, col=1)
     figure.update_yaxes(title="degrees", row=2, col=1)
     figure.update_layout(margin={"t": 70}, legend={"y": 1.07})
@@ -60,13 +60,13 @@ def gain_accuracy(
     for row, point in enumerate(points, start=1):
         for (name, model), hue in zip(models, hues, strict=False):
             width = _half_widths(model, point, omega)
-            add_band(figure, omega, -width, width, hue, row, group=name, show=truth is None and row == 1)
+            add_band(figure, hertz(omega), -width, width, hue, row, group=name, show=truth is None and row == 1)
             if truth is not None:
                 error = 100 * (_known(model, point, omega).gain / _known(truth, point, omega).gain - 1)
-                _add_curve(figure, omega, error, row, name, {"color": hue, "width": 2}, row == 1)
+                _add_curve(figure, hertz(omega), error, row, name, {"color": hue, "width": 2}, row == 1)
         figure.update_yaxes(title="%", row=row, col=1)
     figure.update_xaxes(type="log", dtick=1)
-    figure.update_xaxes(title="frequency (rad/s)", row=len(points), col=1)
+    figure.update_xaxes(title=FREQUENCY, row=len(points), col=1)
     figure.update_layout(margin={"t": 70}, legend={"y": 1 + 40 / height})
     shown = "Error of the gain (curves) and its 95 % band (areas)" if truth is not None else "95 % band of the gain"
     return Plot(figure, f"{shown}, in % of the gain.", _accuracy_table(models, points, omega, axes))
@@ -77,10 +77,10 @@ def _add_model(figure: go.Figure, model: Model, point: OperatingPoint, omega: Fl
     line = {"color": colour(i), "dash": dash(i), "width": 2}
     low, high = known.gain_band()
     low_phase, high_phase = map(np.rad2deg, known.phase_band())
-    add_band(figure, omega, np.maximum(low, 1e-3 * high), high, colour(i), 1, group=name)
-    add_band(figure, omega, low_phase, high_phase, colour(i), 2, group=name)
-    _add_curve(figure, omega, known.gain, 1, name, line, True)
-    _add_curve(figure, omega, np.rad2deg(known.phase), 2, name, line, False)
+    add_band(figure, hertz(omega), np.maximum(low, 1e-3 * high), high, colour(i), 1, group=name)
+    add_band(figure, hertz(omega), low_phase, high_phase, colour(i), 2, group=name)
+    _add_curve(figure, hertz(omega), known.gain, 1, name, line, True)
+    _add_curve(figure, hertz(omega), np.rad2deg(known.phase), 2, name, line, False)
 
 
 def _add_measured(figure: go.Figure, model: Model, measured: Sequence[FrequencyResponse], name: str, i: int) -> None:
@@ -94,13 +94,13 @@ def _add_measured(figure: go.Figure, model: Model, measured: Sequence[FrequencyR
         phase = _known(model, response.operating_point, omega).phase + np.angle(values / near)
         for row, y in enumerate((abs(values), np.rad2deg(phase)), start=1):
             common = {"mode": "markers", "name": name, "legendgroup": name, "showlegend": False}
-            figure.add_scatter(x=omega[kept], y=y[kept], marker=marker, row=row, col=1, **common)
+            figure.add_scatter(x=hertz(omega[kept]), y=y[kept], marker=marker, row=row, col=1, **common)
 
 
 def _add_truth(figure: go.Figure, truth: Model, point: OperatingPoint, omega: FloatArray, show: bool) -> None:
     known = _known(truth, point, omega)
-    add_truth(figure, omega, known.gain, 1, show)
-    add_truth(figure, omega, np.rad2deg(known.phase), 2, False)
+    add_truth(figure, hertz(omega), known.gain, 1, show)
+    add_truth(figure, hertz(omega), np.rad2deg(known.phase), 2, False)
 
 
 def _add_curve(
@@ -126,13 +126,13 @@ def _half_widths(model: Model, point: OperatingPoint, omega: FloatArray) -> Floa
 
 def _table(model: Model, points: Sequence[OperatingPoint], omega: FloatArray, axes: Axes, truth: Model | None) -> Table:
     chosen = omega[np.linspace(0, len(omega) - 1, TABLE_ROWS).astype(int)]
-    heads = ("operating point", "frequency (rad/s)", labelled("gain ± 95 %", axes.gain_unit), "phase ± 95 % (degrees)")
+    heads = ("operating point", FREQUENCY, labelled("gain ± 95 %", axes.gain_unit), "phase ± 95 % (degrees)")
     rows = []
     for point in points:
         known = _known(model, point, chosen)
         true_gain = None if truth is None else _known(truth, point, chosen).gain
         for f, frequency in enumerate(chosen):
-            row = (axes.point(point), significant(frequency), *_with_bands(known, f))
+            row = (axes.point(point), significant(frequency / (2 * np.pi)), *_with_bands(known, f))
             rows.append(row if true_gain is None else (*row, significant(true_gain[f], 4)))
     return Table(heads if truth is None else (*heads, labelled("true gain", axes.gain_unit)), tuple(rows))
 

@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 import plotly.graph_objects as go
 
-from app.report.axes import Axes
+from app.report.axes import FREQUENCY, Axes, hertz
 from app.report.document import Plot, Table
 from app.report.numbers import probability, significant
 from app.report.style import NEUTRAL, colour, new_figure
@@ -35,13 +35,15 @@ def misfit_by_point(parts: Sequence[ComparisonPart], axes: Axes) -> Plot:
 def misfit_by_band(parts: Sequence[ComparisonPart]) -> Plot:
     """Lack of fit in each band of frequencies."""
     caption = f"Lack of fit below, in, and above the excited band, χ² per degree of freedom. {EXPECTED}"
-    return _bars(
+    plot = _bars(
         parts,
         lambda part: [
             (_band(one.minimum_rad_per_second, one.maximum_rad_per_second), one.test) for one in part.by_band
         ],
         caption,
     )
+    plot.figure.update_xaxes(title=FREQUENCY)
+    return plot
 
 
 def misfit_by_class(parts: Sequence[ComparisonPart]) -> Plot:
@@ -107,5 +109,5 @@ def _numbers(test: TestDocument) -> tuple[str, ...]:
 
 def _band(low: float, high: float | None) -> str:
     if high is None:
-        return f"> {significant(low, 2)} rad/s"
-    return f"{significant(low, 2)} to {significant(high, 2)}"
+        return f"> {significant(float(hertz(low)), 2)}"
+    return f"{significant(float(hertz(low)), 2)} to {significant(float(hertz(high)), 2)}"

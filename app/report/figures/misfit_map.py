@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import plotly.graph_objects as go
 
+from app.report.axes import FREQUENCY, hertz
 from app.report.document import Plot, Table
 from app.report.numbers import significant
 from app.report.style import SEQUENTIAL, new_figure
@@ -60,8 +61,8 @@ def misfit_map(rows: Sequence[MapRow]) -> Plot:
     edges = _edges(rows)
     for place, (_, own, excited) in enumerate(panes, start=1):
         _add_map(figure, own, excited, edges, place)
-    figure.update_xaxes(type="log", dtick="D2", showgrid=False, range=np.log10(edges[[0, -1]]).tolist())
-    figure.update_xaxes(title="frequency (rad/s)", row=len(panes), col=1)
+    figure.update_xaxes(type="log", dtick="D2", showgrid=False, range=np.log10(hertz(edges[[0, -1]])).tolist())
+    figure.update_xaxes(title=FREQUENCY, row=len(panes), col=1)
     figure.update_layout(coloraxis=_colours(), margin={"t": 30})
     caption = (
         "Root mean square of the residuals divided by their standard deviation: 1 (dark) is what noise alone gives,"
@@ -105,11 +106,11 @@ def _edges(rows: Sequence[MapRow]) -> FloatArray:
 def _add_map(figure: go.Figure, rows: Sequence[MapRow], excited: bool, edges: FloatArray, place: int) -> None:
     values = np.stack([row.cells(excited, edges) for row in rows])
     figure.add_heatmap(
-        x=edges,
+        x=hertz(edges),
         y=np.arange(len(rows)),
         z=np.log10(np.clip(values, 1.0, BRIGHTEST)),
         customdata=values,
-        hovertemplate="%{x:.3g} rad/s: %{customdata:.2f}<extra></extra>",
+        hovertemplate="%{x:.3g} Hz: %{customdata:.2f}<extra></extra>",
         coloraxis="coloraxis",
         row=place,
         col=1,

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import plotly.graph_objects as go
 
-from app.report.axes import Axes, labelled
+from app.report.axes import FREQUENCY, Axes, hertz, labelled
 from app.report.document import Plot, Table
 from app.report.numbers import significant
 from app.report.style import NEUTRAL, add_band, colour, dash, new_figure
@@ -26,7 +26,7 @@ def missing(diagnosis: Diagnosis, labels: Mapping[str, str], axes: Axes) -> Plot
         _add(figure, row, titles, place)
         figure.update_yaxes(title=axes.gain_unit, rangemode="tozero", row=place, col=1)
     figure.update_xaxes(type="log", dtick=1)
-    figure.update_xaxes(title="frequency (rad/s)", row=len(chosen), col=1)
+    figure.update_xaxes(title=FREQUENCY, row=len(chosen), col=1)
     figure.update_layout(margin={"t": 75}, legend={"y": 1 + 40 / height})
     caption = (
         "What is missing from the frequency response, smoothed (broad line), the size below which it may be noise"
@@ -47,11 +47,11 @@ def _size(row: MissingResponse) -> np.ndarray:
 
 
 def _add(figure: go.Figure, row: MissingResponse, titles: dict[str, str], place: int) -> None:
-    omega = np.array(row.frequencies_rad_per_second)
+    frequencies = hertz(np.array(row.frequencies_rad_per_second))
     noise = QUANTILE_95 * np.array(row.standard_deviation)
     first = place == 1
-    add_band(figure, omega, 0 * noise, noise, NEUTRAL, place, 0.25, "noise, 95 %", show=first)
-    common = {"mode": "lines", "showlegend": first, "row": place, "col": 1, "x": omega}
+    add_band(figure, frequencies, 0 * noise, noise, NEUTRAL, place, 0.25, "noise, 95 %", show=first)
+    common = {"mode": "lines", "showlegend": first, "row": place, "col": 1, "x": frequencies}
     line = {"color": NEUTRAL, "width": 6}
     figure.add_scatter(y=_size(row), line=line, name="missing", legendgroup="missing", **common)
     for i, one in enumerate(row.explained):
@@ -62,11 +62,15 @@ def _add(figure: go.Figure, row: MissingResponse, titles: dict[str, str], place:
 
 def _table(rows: Sequence[MissingResponse], names: Sequence[str], titles: dict[str, str]) -> Table:
     kinds = [one.kind for one in rows[0].explained] if rows else []
-    heads = ("experiment", "frequency (rad/s)", labelled("|δG|", ""), "σ", *(titles.get(k, k) for k in kinds))
+    heads = ("experiment", FREQUENCY, labelled("|δG|", ""), "σ", *(titles.get(k, k) for k in kinds))
     lines = []
     for name, row in zip(names, rows, strict=True):
         for i in np.linspace(0, len(row.frequencies_rad_per_second) - 1, 9).astype(int):
             explained = (significant(abs(one.response.array()[i])) for one in row.explained)
-            omega, size, noise = row.frequencies_rad_per_second[i], _size(row)[i], row.standard_deviation[i]
-            lines.append((name, significant(omega), significant(size), significant(noise, 2), *explained))
+            frequency, size, noise = (
+                hertz(np.array(row.frequencies_rad_per_second))[i],
+                _size(row)[i],
+                row.standard_deviation[i],
+            )
+            lines.append((name, significant(frequency), significant(size), significant(noise, 2), *explained))
     return Table(heads, tuple(lines))

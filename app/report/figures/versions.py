@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 import plotly.graph_objects as go
 
-from app.report.axes import Axes, labelled
+from app.report.axes import FREQUENCY, Axes, hertz, labelled
 from app.report.document import Plot, Table
 from app.report.numbers import significant
 from app.report.style import NEUTRAL, add_band, colour, dash, new_figure
@@ -32,16 +32,16 @@ def side_by_side(versions: Sequence[Version], batch: Batch, label: str, axes: Ax
     phase = np.unwrap(np.angle(measured))
     for row, y in enumerate((abs(measured), np.rad2deg(phase)), start=1):
         common = {"mode": "markers", "name": "measured", "legendgroup": "measured", "showlegend": row == 1}
-        figure.add_scatter(x=omega, y=y, marker=marker, row=row, col=1, **common)
+        figure.add_scatter(x=hertz(omega), y=y, marker=marker, row=row, col=1, **common)
     noise = np.sqrt(batch.variances[0, used]) / abs(input_lines)
     line = {"color": NEUTRAL, "width": 4}
-    figure.add_scatter(x=omega, y=noise, mode="lines", line=line, name="noise (σ)", opacity=0.6, row=3, col=1)
+    figure.add_scatter(x=hertz(omega), y=noise, mode="lines", line=line, name="noise (σ)", opacity=0.6, row=3, col=1)
     said = [_said(model, batch, used) for _, model in versions]
     for i, ((name, model), response) in enumerate(zip(versions, said, strict=True)):
         _add_version(figure, name, i, omega, response, measured)
         _add_bands(figure, model, batch, omega, response, name, i)
     figure.update_xaxes(type="log", dtick=1)
-    figure.update_xaxes(title="frequency (rad/s)", row=3, col=1)
+    figure.update_xaxes(title=FREQUENCY, row=3, col=1)
     figure.update_yaxes(type="log", dtick=1, exponentformat="power", title=axes.gain_unit, row=1, col=1)
     figure.update_yaxes(title="degrees", row=2, col=1)
     figure.update_yaxes(type="log", dtick=1, exponentformat="power", title=axes.gain_unit, row=3, col=1)
@@ -63,12 +63,12 @@ def _add_version(
 ) -> None:
     phase = np.unwrap(np.angle(measured)) + np.angle(response / measured)
     line = {"color": colour(i), "dash": dash(i), "width": 2}
-    common = {"mode": "lines", "line": line, "name": name, "legendgroup": name, "x": omega, "col": 1}
+    common = {"mode": "lines", "line": line, "name": name, "legendgroup": name, "x": hertz(omega), "col": 1}
     figure.add_scatter(y=abs(response), row=1, **common)
     figure.add_scatter(y=np.rad2deg(phase), showlegend=False, row=2, **common)
     marker = {"size": 5, "color": colour(i), "symbol": "circle-open" if i else "diamond"}
     common = {"mode": "markers", "marker": marker, "name": name, "legendgroup": name, "showlegend": False}
-    figure.add_scatter(x=omega, y=np.maximum(abs(response - measured), 1e-300), row=3, col=1, **common)
+    figure.add_scatter(x=hertz(omega), y=np.maximum(abs(response - measured), 1e-300), row=3, col=1, **common)
 
 
 def _add_bands(
@@ -78,7 +78,7 @@ def _add_bands(
     if covariance is None:
         return
     low, high = gain_and_phase(response, covariance[0]).gain_band()
-    add_band(figure, omega, np.maximum(low, 1e-3 * high), high, colour(i), 1, group=name)
+    add_band(figure, hertz(omega), np.maximum(low, 1e-3 * high), high, colour(i), 1, group=name)
 
 
 def _table(
@@ -89,10 +89,10 @@ def _table(
     noise: FloatArray,
     axes: Axes,
 ) -> Table:
-    heads = ("frequency (rad/s)", labelled("measured gain", axes.gain_unit), "noise σ")
+    heads = (FREQUENCY, labelled("measured gain", axes.gain_unit), "noise σ")
     rows = []
     for f in np.unique(np.linspace(0, len(omega) - 1, TABLE_ROWS).astype(int)):
         both = (value for one in said for value in (abs(one[f]), abs(one[f] - measured[f])))
-        rows.append((significant(omega[f]), *(significant(v, 4) for v in (abs(measured[f]), noise[f], *both))))
+        rows.append((significant(hertz(omega)[f]), *(significant(v, 4) for v in (abs(measured[f]), noise[f], *both))))
     names = tuple(text for name, _ in versions for text in (f"gain, {name}", f"error, {name}"))
     return Table((*heads, *names), tuple(rows))

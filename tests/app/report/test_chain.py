@@ -125,7 +125,7 @@ def test_the_map_is_bright_where_the_residual_is_large() -> None:
                 np.testing.assert_allclose(values[np.isfinite(values)], 1.0)
                 continue
             cell = int(np.nanargmax(values))
-            assert heat.x[cell] <= where <= heat.x[cell + 1]
+            assert heat.x[cell] <= where / (2 * np.pi) <= heat.x[cell + 1]
     assert plot.table.rows[0][:2] == ("at 50", "fitted")
 
 

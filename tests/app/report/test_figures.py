@@ -91,7 +91,7 @@ def test_every_plot_has_finite_numbers_and_a_table(make: Callable[[], Plot]) -> 
 
 def test_line_spectra_are_drawn_at_their_frequencies() -> None:
     plot = spectra(EXPERIMENTS, 64, 0.5, AXES)
-    np.testing.assert_allclose(plot.figure.data[0].x, np.pi * np.array([1, 4]) / 16)
+    np.testing.assert_allclose(plot.figure.data[0].x, np.array([1, 4]) / 32)
     np.testing.assert_allclose(plot.figure.data[0].y, [10.0, 20.0])
     assert plot.table.rows[0][1:] == ("10.0", "10.0")
 
