@@ -20,7 +20,7 @@ from app.schemas.state_space import StateSpaceResult
 from app.schemas.varying import EigenvaluesDocument, VaryingModelRequest
 from identification.arrays import FloatArray
 from identification.bases.polynomial import Polynomial
-from identification.errors import MisuseError
+from identification.errors import MisuseError, ShapeError
 from identification.models.model import Model
 from identification.outcome import Outcome, TestResult
 from identification.parametric.pole_guarantee import fine_grid
@@ -39,8 +39,16 @@ def requested_structure(plant: Plant, request: VaryingModelRequest) -> DiscreteS
     return structure
 
 
-def affine_basis(variables: int) -> ProductBasisDocument:
-    """1 and each scheduling variable."""
+def requested_basis(plant: Plant, request: VaryingModelRequest) -> ProductBasisDocument:
+    """The functions that the matrices are sums over: 1 and each scheduling variable when none are stated.
+
+    Raises ShapeError for another number of factors than scheduling variables.
+    """
+    variables = len(plant.scheduling_variables)
+    if request.basis is not None:
+        if len(request.basis.factors) != variables:
+            raise ShapeError(f"the basis has {len(request.basis.factors)} factors; give {variables}", "basis")
+        return request.basis
     factors = [{"kind": "polynomial", "degree": 1}] * variables
     return ProductBasisDocument.model_validate({"factors": factors, "totalDegree": 1})
 

@@ -64,9 +64,11 @@ class Catalogue(CamelModel):
     parametric_estimators: list[CatalogueEntry] = Field(description="parameter-varying state-space models")
     refinements: list[CatalogueEntry] = Field(description="what improves a parameter-varying state-space model")
     varying_estimators: list[CatalogueEntry] = Field(
-        description="affine state-space models, from records in which the scheduling varies"
+        description="state-space models over functions of the scheduling, from records in which it varies"
     )
-    varying_refinements: list[CatalogueEntry] = Field(description="what improves an affine state-space model")
+    varying_refinements: list[CatalogueEntry] = Field(
+        description="what improves a state-space model from varying scheduling"
+    )
     pole_regions: list[CatalogueEntry] = Field(description="where the poles of state-space models must lie")
     targets: list[CatalogueEntry] = Field(description="accuracy targets of designs")
     spectrum_families: list[CatalogueEntry] = Field(description="input spectra of designs")

@@ -8,11 +8,11 @@ from app.arrays import ComplexVector, Matrix, Vector
 from app.schemas.common import CamelModel, Double, Integer
 from app.schemas.experiments import Identifier
 from app.schemas.families import VaryingEstimator, VaryingRefinement
-from app.schemas.plants import DiscreteStateSpaceStructure, LongText, Text
+from app.schemas.plants import DiscreteStateSpaceStructure, LongText, ProductBasisDocument, Text
 
 
 class VaryingModelRequest(CamelModel):
-    """Which record along varying scheduling to identify an affine state-space model from, and how."""
+    """Which record along varying scheduling to identify a state-space model from, and how."""
 
     plant_id: Identifier
     name: Text = ""
@@ -25,6 +25,11 @@ class VaryingModelRequest(CamelModel):
     refinement: VaryingRefinement | None = Field(
         default=None, description="maximum likelihood that starts from the model found; null: none"
     )
+    basis: ProductBasisDocument | None = Field(
+        default=None,
+        description="functions of the scheduling variables that the matrices are sums over; 1 and each variable when"
+        " left out",
+    )
     structure: DiscreteStateSpaceStructure | None = Field(
         default=None, description="order and sample time in place of those of the plant's structure"
     )
@@ -33,7 +38,9 @@ class VaryingModelRequest(CamelModel):
 class EigenvaluesDocument(CamelModel):
     """Eigenvalues of one A_i with the covariance of their real and imaginary parts; null where it is not known."""
 
-    function: str = Field(description="what A_i is multiplied by: 1 or the name of a scheduling variable")
+    function: str = Field(
+        description="what A_i is multiplied by: 1, powers of scheduling variables, or [indices] of functions"
+    )
     eigenvalues: ComplexVector
     real_variances: list[Double | None]
     imaginary_variances: list[Double | None]
@@ -85,7 +92,7 @@ class VaryingResult(CamelModel):
     refinement: VaryingRefinement | None
     starting_outcome: str = Field(description="what the estimator said before the refinement; empty without one")
     steady: SteadyPeriodsDocument | None = Field(description="null when the record is not synchronised")
-    eigenvalues: list[EigenvaluesDocument] = Field(description="of A_0, then of each scheduling variable's A_i")
+    eigenvalues: list[EigenvaluesDocument] = Field(description="of A_i of each function, as in θ")
     noise_spectrum: NoiseSpectrumDocument | None = Field(description="null where it cannot be known")
     fits: list[VaryingFit] = Field(description="the fitted record first, then those held out")
     warnings: list[str] = Field(description="assumptions of the estimator that the data break")

@@ -5,8 +5,8 @@ from typing import Any
 
 from app.container import Container
 from app.conversion.misuse import pointing
-from app.conversion.plants import channels
-from app.conversion.varying_models import requested_structure
+from app.conversion.plants import channels, product_basis
+from app.conversion.varying_models import requested_basis, requested_structure
 from app.errors import UnprocessableError
 from app.jobs.records import JobRecord
 from app.schemas.experiments import Experiment
@@ -37,16 +37,18 @@ def submit(container: Container, request: VaryingModelRequest, key: str | None) 
     held_out = named_of_plant(resources, "experiments", wanted[1:], plant.id, "/heldOutExperimentIds")
     experiments = [(experiment_of(row), row.arrays or "") for row in (fitted, *held_out)]
     task = payload(plant, request, experiments[0], experiments[1:])
-    mark = fingerprint("createVaryingModel", request.model_dump(mode="json"))
+    sent = {name: value for name, value in request.model_dump(mode="json").items() if (name, value) != ("basis", None)}
+    mark = fingerprint("createVaryingModel", sent)
     return container.ledger.submit(TASK, task, KIND, plant.id, key, mark)
 
 
 def payload(plant: Plant, request: VaryingModelRequest, fitted: Given, held_out: Sequence[Given]) -> dict[str, Any]:
     """What the task gets; raises UnprocessableError when experiments and structure do not fit."""
-    with pointing({}, default="/structure"):
+    with pointing({"basis": "/basis"}, default="/structure"):
         structure = requested_structure(plant, request)
-    (n_y, n_u), n_p = channels(plant), len(plant.scheduling_variables)
-    size = StackSizes(structure.order or 1, 1 + n_p, n_u, n_y).size
+        functions = product_basis(requested_basis(plant, request)).size
+    n_y, n_u = channels(plant)
+    size = StackSizes(structure.order or 1, functions, n_u, n_y).size
     if size > MOST_ENTRIES:
         raise UnprocessableError.at(
             "/structure",

@@ -224,6 +224,48 @@ def test_coloured_scheduling_breaks_an_assumption_and_is_said(api: Api, cox: tup
     assert output_error["varying"]["fits"][0]["vafPercent"] > 99.9
 
 
+def test_a_plant_with_squares_needs_a_basis_with_squares(api: Api) -> None:
+    """Both ends of the range are wrong by what is missing with 1 and p; with B-splines of degree 2 nothing is."""
+    variables = [{"name": "height", "unit": "mm", "minimum": 2.0, "maximum": 4.0}]
+    plant = api.post("/plants", {**varying.TURBINE, "schedulingVariables": variables})
+    g = np.random.default_rng(7)
+    u, q = np.tile(g.standard_normal(120), 12), np.tile(g.uniform(-1, 1, 10), 144)
+    y, x = np.empty(len(u)), 0.0
+    for t, (v, s) in enumerate(zip(u, q, strict=True)):
+        y[t] = (1 + 0.3 * s * s) * x
+        x = (0.4 + 0.3 * s * s) * x + (1 - 0.2 * s) * v
+    signals = u[:, None], (y + 0.01 * g.standard_normal(len(y)))[:, None], (3 + q)[:, None]
+    record = api.made("/experiments", varying.body(plant, signals, periodSamples=120))["id"]
+    structure = {**varying.TURBINE["structure"], "order": 1}
+    estimator = {"kind": "periodic_likelihood"}
+    splines = {"factors": [{"kind": "b_spline", "degree": 2}]}
+    found = identified(api, plant, [record], estimator, structure=structure, basis=splines)
+    assert found["tests"][0]["pValue"] > 1e-3
+    assert found["basis"]["factors"][0]["kind"] == "b_spline"
+    assert [one["function"] for one in found["varying"]["eigenvalues"]] == ["[0]", "[1]", "[2]"]
+    omega = np.linspace(0.1, 3.0, 12)
+    band = {"minimumRadPerSecond": 0.1, "maximumRadPerSecond": 3.0, "count": 12, "spacing": "linear"}
+    response = api.get(f"/models/{found['id']}/frequency-response", operatingPoint=[3.8], **band)
+    omega = np.array(response["frequenciesRadPerSecond"])
+    exact = (1 + 0.3 * 0.64) * (1 - 0.2 * 0.8) / (np.exp(1j * omega) - 0.4 - 0.3 * 0.64)
+    error = complex_array(response["response"]) - exact
+    assert np.all(abs(error.real) < 5 * np.sqrt(response["realVariance"]))
+    affine = identified(api, plant, [record], estimator, structure=structure)
+    assert affine["tests"][0]["pValue"] < 1e-9
+    compared = api.made("/comparisons", {"modelId": found["id"], "experimentIds": [record]})
+    assert compared["parts"][0]["lackOfFit"]["pValue"] > 1e-3
+    problem = api.refused(
+        "/models/varying",
+        {
+            "plantId": plant["id"],
+            "experimentId": record,
+            "estimator": estimator,
+            "basis": {"factors": splines["factors"] * 2},
+        },
+    )
+    assert problem["errors"][0]["pointer"] == "/basis"
+
+
 def test_the_catalogue_has_the_estimators_with_their_options(api: Api) -> None:
     catalogue = api.get("/catalogue")
     kinds = {one["kind"]: one for one in catalogue["varyingEstimators"]}

@@ -7,10 +7,11 @@ from pydantic.alias_generators import to_camel
 from app import __version__
 from app.conversion.extremes import within_doubles
 from app.conversion.fields import field_named
+from app.conversion.plants import product_basis
 from app.conversion.varying_models import (
-    affine_basis,
     eigenvalue_documents,
     model_parts,
+    requested_basis,
     requested_structure,
     state_space_part,
     structure_document,
@@ -24,6 +25,7 @@ from app.schemas.plug_ins import PlugInDocument
 from app.schemas.varying import VaryingModelRequest, VaryingResult
 from identification.errors import NotIdentifiableError
 from identification.estimates import Estimate
+from identification.scheduling import ProductBasis
 from identification.varying.progress import within
 from identification.varying.records import VaryingRecord
 
@@ -39,10 +41,12 @@ def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
     record = kept_record(fitted, plant, context.arrays.get(payload["experiment"]["arrays"]))
     order = requested_structure(plant, request).order
     with within_doubles():
-        first = _estimated(request.estimator, "/estimator", record, order, None, context)
+        basis = product_basis(requested_basis(plant, request))
+        first = _estimated(request.estimator, "/estimator", record, order, None, basis, context)
         last = first
         if request.refinement is not None:
-            last = _estimated(request.refinement, "/refinement", record, first.model.structure.order, first, context)
+            order = first.model.structure.order
+            last = _estimated(request.refinement, "/refinement", record, order, first, basis, context)
         context.progress(0.9, "judging the model")
         return TaskResult(_document(plant, request, record, (first, last), payload, context))
 
@@ -53,13 +57,20 @@ def _estimated(
     record: VaryingRecord,
     order: int | None,
     start: Estimate | None,
+    basis: ProductBasis,
     context: TaskContext,
 ) -> Estimate:
     """What an estimator finds; raises NotIdentifiableError when the record cannot determine the parameters."""
     options = {name: f"{pointer}/{to_camel(name)}" for name in type(asked).model_fields}
-    fields = {**options, **dict.fromkeys(OF_DATA, "/experimentId"), "order": "/structure", "start": pointer}
+    fields = {
+        **options,
+        **dict.fromkeys(OF_DATA, "/experimentId"),
+        "order": "/structure",
+        "start": pointer,
+        "basis": "/basis",
+    }
     ends = (0.05, 0.5) if start is None else (0.5, 0.9)
-    begun = {} if start is None else {"start": start.model}
+    begun: dict[str, Any] = {"basis": basis} | ({} if start is None else {"start": start.model})
     with field_named(fields, "/experimentId"):
         found: Estimate = asked.build().estimate(record, order, **begun, progress=within(context.progress, *ends))
         if found.outcome.status == "not_identifiable":
@@ -86,7 +97,7 @@ def _document(
         "softwareVersion": __version__,
         "origin": "identified",
         "structure": structure_document(requested_structure(plant, request), estimate.model),
-        "basis": affine_basis(len(plant.scheduling_variables)).as_json(),
+        "basis": requested_basis(plant, request).as_json(),
         "coefficientBases": [],
         **model_parts(estimate.model, estimate.outcome, estimate.tests),
         "localModels": [],
