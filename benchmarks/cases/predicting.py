@@ -2,8 +2,9 @@
 
 import numpy as np
 
-from benchmarks.cases.reading import HeldOut, repeated
+from benchmarks.cases.reading import HeldOut
 from identification.arrays import ComplexArray, FloatArray
+from identification.extension.as_recorded import as_recorded
 from identification.extension.response import linear_response
 from identification.extension.steady_period import steady_period
 from identification.models.model import Model
@@ -22,8 +23,12 @@ def predicted(model: Model, one: HeldOut) -> FloatArray | ComplexArray:
     assert one.input is not None
     if one.period is None:
         played = np.concatenate([one.input, np.zeros(RELEASE * len(one.input))])
-        return _steady(model, one, played)[: one.samples]
-    return repeated(_steady(model, one, _one_period(one.input, one.period)), one.samples)
+        return _recorded(model, one, _steady(model, one, played))
+    return _recorded(model, one, _steady(model, one, _one_period(one.input, one.period)))
+
+
+def _recorded(model: Model, one: HeldOut, output: FloatArray) -> FloatArray:
+    return as_recorded(model, output, one.sample_time, np.array(one.point), one.samples, one.logged)
 
 
 def _one_period(input: FloatArray, period: int) -> FloatArray:

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from identification.signals import HeldInput
 EXCITED, ODD, EVEN = 0, 1, 2
 NEGLIGIBLE, SMALLEST = 0.1, 0.2
 CLASS_NAMES = ("excited", "unexcited odd", "unexcited even")
+EACH = ("points", "inputs", "variances", "classes", "members", "signals", "ends", "nuisance")
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,6 +47,10 @@ class Batch:
     orthonormal whitened rows of what any model could have missed; lack of fit is then judged there and the noise is
     what they leave. `adaptation`: how the batch follows from the model; None where it does not. `measured_law` (M, K):
     the output from which forces that effects feed back are computed in place of the simulated one.
+
+    The periods that are compared begin `begun` (M,) seconds after the start of the record, and `averaged` is how many
+    they are. `drift`: the share by which the clock of the outputs was seen to run faster, zero where it was not;
+    `parts` (M, P, K): each of the periods then, see `in_parts`.
     """
 
     points: FloatArray
@@ -76,6 +82,10 @@ class Batch:
     general: FloatArray | None = None
     adaptation: Adaptation | None = None
     measured_law: ComplexArray | None = None
+    begun: FloatArray | None = None
+    averaged: int = 1
+    parts: ComplexArray | None = None
+    drift: float = 0.0
 
     @cached_property
     def real(self) -> BoolArray:
@@ -108,6 +118,31 @@ class Batch:
         taken = 0 if (found := self._of_nuisance) is None else int(np.sum(found[1] < 0))
         transients = 0 if self._span is None else round(float(self._span.counts.sum()))
         return int(self.compared.sum()) - taken - transients
+
+    def in_parts(self) -> "Batch":
+        """With each part as a measurement where the phases of the periods drift, its variance as it has fewer."""
+        if self.parts is None:
+            return self
+        assert self.begun is not None
+        assert self.signals is not None
+        assert self.sample_time is not None
+        count, duration = self.parts.shape[1], self.signals.shape[-1] * self.sample_time
+        own, skipped = divmod(self.averaged, count)
+        each = {name: getattr(self, name) for name in EACH if getattr(self, name) is not None}
+        repeated: dict[str, Any] = {name: np.repeat(value, count, axis=0) for name, value in each.items()}
+        for name in ("variances", "ends"):
+            repeated[name] = self.averaged / own * repeated[name]
+        begun = (self.begun[:, None] + duration * (skipped + own * np.arange(count))).ravel()
+        return replace(
+            self,
+            **repeated,
+            outputs=self.parts.reshape(-1, len(self.omega)),
+            logged={name: np.repeat(value, count) for name, value in self.logged.items()},
+            begun=begun,
+            averaged=own,
+            parts=None,
+            slopes=None,
+        )
 
     @property
     def repeats(self) -> bool:

@@ -10,6 +10,7 @@ from identification.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from identification.comparison.batch import EVEN, EXCITED, ODD, Batch
 from identification.comparison.between import flattened
 from identification.comparison.both_signals import both_signals, excited_in_noise
+from identification.comparison.clock import Turned, clock_of, turned
 from identification.comparison.disturbance import find_disturbances, without
 from identification.comparison.free_record import of_record
 from identification.comparison.noise import NoiseOfMean, noise_of_mean
@@ -28,6 +29,7 @@ from identification.spectral.periodic_average import PeriodicAverage, excited_li
 from identification.spectral.resolution import check_changing, converter_step, repeated_error
 
 ROUNDS = 0.1
+MOST_PARTS = 8
 SLOW = "the output drifts slowly over the record; a smooth trend was taken off, and its mean value is not compared"
 WALKS = "the level of the output wanders like a random walk; it counts as noise, and the mean value is not compared"
 CLAMPED = (
@@ -50,7 +52,8 @@ def gather(
     if not experiments:
         raise MisuseError("there is nothing to compare with; give at least one experiment", "experiments")
     check_changing(experiments)
-    parts = [_one(m, data, mean_value) for m, data in enumerate(experiments)]
+    clock = clock_of(experiments)
+    parts = [_one(m, data, mean_value, clock) for m, data in enumerate(experiments)]
     if logged:
         parts = _with_logged(parts, logged)
     groups: dict[object, list[Batch]] = {}
@@ -85,6 +88,8 @@ def _grid(part: Batch) -> object:
         type(part.adaptation),
         part.channels.input.quantity,
         part.channels.output.quantity,
+        part.averaged,
+        part.parts is None,
     )
     return (*kind, part.omega.tobytes())
 
@@ -97,7 +102,7 @@ def _joined(group: list[Batch]) -> Batch:
     }
     stated: dict[str, Any] = {
         name: None if getattr(first, name) is None else np.concatenate([getattr(part, name) for part in group])
-        for name in ("signals", "ends", "transients")
+        for name in ("signals", "ends", "transients", "begun", "parts")
     }
     nuisances = [part.nuisance for part in group if part.nuisance is not None]
     between = tuple(b for part in group for b in part.between)
@@ -120,6 +125,8 @@ def _joined(group: list[Batch]) -> Batch:
         logged={name: np.concatenate([part.logged[name] for part in group]) for name in first.logged},
         channels=first.channels,
         adaptation=None if first.adaptation is None else first.adaptation.joined(others),
+        averaged=first.averaged,
+        drift=float(np.mean([part.drift for part in group])),
         **stated,
         **stacked,
     )
@@ -131,12 +138,12 @@ def _padded(signals: Sequence[FloatArray]) -> FloatArray:
     return np.concatenate([np.pad(one, ((0, 0), (0, most - one.shape[1]), (0, 0))) for one in signals])
 
 
-def _one(m: int, data: Measurement, mean_value: bool) -> Batch:
+def _one(m: int, data: Measurement, mean_value: bool, clock: float) -> Batch:
     if isinstance(data, FrequencyResponse):
         return _of_response(m, data)
     if data.period is None or data.period_count < 2:
         return of_record(m, data)
-    return _of_periodic(m, data, mean_value)
+    return _of_periodic(m, data, mean_value, clock)
 
 
 def _of_response(m: int, data: FrequencyResponse) -> Batch:
@@ -172,9 +179,11 @@ def _of_response(m: int, data: FrequencyResponse) -> Batch:
     )
 
 
-def _of_periodic(m: int, record: TimeRecord, mean_value: bool) -> Batch:
+def _of_periodic(m: int, record: TimeRecord, mean_value: bool, clock: float) -> Batch:
     period = record.period
     assert period is not None
+    drift = turned(record, clock) if clock else Turned(np.zeros(period), np.zeros(len(record)), 0.0)
+    record = replace(record, output=record.output - drift.moved)
     trend = slow_trend(record, record.period_count)
     level = record if trend is None else without_trend(record, trend.signal)
     count = steady_count(level, trend is None and wanders(level, record.period_count))
@@ -186,7 +195,8 @@ def _of_periodic(m: int, record: TimeRecord, mean_value: bool) -> Batch:
     omega = np.asarray(2 * np.pi * np.fft.rfftfreq(period, record.sample_time), dtype=np.float64)
     real = real_lines(omega, record.sample_time)
     excited = excited_lines(u, estimator.threshold) & excited_in_noise(u, real)
-    noise = _noise(u, y, excited, real, walks)
+    back = drift.turned_back(y, record.period_count - count) if clock else y
+    noise = _noise(u, back, excited, real, walks)
     step = converter_step(record.output)
     rounding = repeated_error(step, float(np.sqrt(np.sum(np.var(y, axis=0, ddof=1) * np.where(real, 1, 2)))))
     rounded = np.asarray(rounding / period * np.where(real, 2.0, 1.0))
@@ -194,12 +204,13 @@ def _of_periodic(m: int, record: TimeRecord, mean_value: bool) -> Batch:
     variances = noise.variance + rounded
     if not mean_value or trend is not None:
         variances[0] = np.inf
+    shown = y + np.fft.rfft(drift.moved[: record.period_count * period].reshape(-1, period))[-count:] / period
     mean_input = u.mean(axis=0) if both else np.where(excited, u.mean(axis=0), 0.0)
     return Batch(
         points=np.array([record.operating_point], dtype=np.float64),
         omega=omega,
         inputs=mean_input[None],
-        outputs=y.mean(axis=0)[None],
+        outputs=shown.mean(axis=0)[None],
         variances=variances[None],
         classes=_classes(excited)[None],
         members=np.array([m]),
@@ -213,6 +224,7 @@ def _of_periodic(m: int, record: TimeRecord, mean_value: bool) -> Batch:
         ends=noise.ends[None],
         nuisance=left_in_mean(period, 0 if trend is None else trend.degree, count, walks)[None],
         slopes=_slopes(np.where(excited, y - _between(u, y, excited) * u, y))[None],
+        drift=drift.skew,
         between=(between_harmonics(level, count),),
         disturbances=(disturbances,),
         channels=record.channels,
@@ -221,7 +233,17 @@ def _of_periodic(m: int, record: TimeRecord, mean_value: bool) -> Batch:
             *([(m, SLOW)] if trend is not None else [(m, WALKS)] if walks else []),
         ),
         adaptation=both,
+        begun=np.array([(record.period_count - count) * period * record.sample_time]),
+        averaged=count,
+        parts=_parts(shown)[None] if clock and both is None else None,
     )
+
+
+def _parts(spectra: ComplexArray) -> ComplexArray:
+    """The spectra (P, K) of periods; of many the last ones as means of neighbours, `MOST_PARTS` of them."""
+    count = min(len(spectra), MOST_PARTS)
+    last = spectra[len(spectra) % count :]
+    return np.asarray(last.reshape(count, -1, spectra.shape[1]).mean(axis=1))
 
 
 def _slopes(spectra: ComplexArray) -> ComplexArray:

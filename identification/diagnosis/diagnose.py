@@ -99,7 +99,7 @@ class Diagnosis:
 def rows_of(model: Model, batches: Sequence[Batch]) -> Rows:
     """The batches as rows for a model; noise of unknown size is scaled by what the model leaves."""
     require_matching(model, batches)
-    rows = Rows(settled(model, batches))
+    rows = Rows(settled(model, [batch.in_parts() for batch in batches]))
     if rows.scaled:
         return rows
     parts = rows.parts(fit(model, rows).residual)

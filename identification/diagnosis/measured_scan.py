@@ -14,6 +14,7 @@ from identification.extension.rows import effect_tangents
 from identification.places.nonlinear import Added
 from identification.places.place import Effect
 from identification.places.placed import PlacedEffect
+from identification.places.recorder import Recorder
 
 STRONG = 3.0
 NEARLY, SEVERAL = 0.5, 1
@@ -53,8 +54,8 @@ def _periodic(batch: Batch) -> bool:
 
 
 def on_signals(effect: Effect) -> bool:
-    """Whether it acts on signals, and not only adds to the output."""
-    return effect.needs_records and not isinstance(effect, Added)
+    """Whether it acts on signals, and neither only adds to the output nor lies in how that is recorded."""
+    return effect.needs_records and not isinstance(effect, Added | Recorder)
 
 
 def _least(alone: Fit, space: FloatArray, score: Score) -> tuple[list[PlacedEffect], float]:

@@ -13,6 +13,7 @@ from identification.models.model import Model
 from identification.places.core import Reshaped
 from identification.places.place import Effect, Flow
 from identification.places.placed import PlacedEffect, amplitude_basis
+from identification.places.recorder import Recorder
 
 FURTHER_STEP = 1e-4
 
@@ -90,7 +91,7 @@ def plant_tangents(model: Model, rows: Rows, flows: Sequence[Flow]) -> FloatArra
     spectra = []
     for flow in flows:
         by_zeta = np.swapaxes(flow.by_coefficients, 1, 2)
-        spectra.append(np.moveaxis(model.pulled(by_zeta, flow.batch.points), -1, 0))
+        spectra.append(flow.recorded(np.moveaxis(model.pulled(by_zeta, flow.batch.points), -1, 0)))
     return rows.whiten(spectra)
 
 
@@ -106,7 +107,8 @@ def _by_amplitudes(effect: Effect, one: PlacedEffect, flow: Flow) -> ComplexArra
     basis = amplitude_basis(effect, one.degree, flow.setting, flow.batch)
     tangent = effect.tangent(one.amplitude(flow.setting, flow.batch), flow)
     columns = tangent[:, None] * basis.T[None, :, :, None]
-    return np.asarray(columns.reshape(-1, *tangent.shape[1:]))
+    found = np.asarray(columns.reshape(-1, *tangent.shape[1:]))
+    return found if isinstance(effect, Recorder) else flow.recorded(found)
 
 
 def _by_further(one: PlacedEffect, name: str, flows: Sequence[Flow]) -> list[ComplexArray]:
@@ -127,6 +129,6 @@ def _between(up: PlacedEffect, down: PlacedEffect, flow: Flow) -> ComplexArray:
     if isinstance(up.effect, Reshaped) and isinstance(down.effect, Reshaped):
         first = up.effect.seen(up.amplitude(flow.setting, flow.batch), flow)
         last = down.effect.seen(down.amplitude(flow.setting, flow.batch), flow)
-        return flow.through(first - last)[None]
+        return flow.recorded(flow.through(first - last))[None]
     change = _by_amplitudes(up.effect, up, flow) - _by_amplitudes(down.effect, down, flow)
     return np.tensordot(up.coefficients.ravel(), change, axes=1)[None]

@@ -66,7 +66,8 @@ class Flow:
     times all factors; `linear` (M, K) after all that acts linearly; `output` (M, K). `acting`: the effects with their
     amplitudes; `gradient`: of the core by ζ_G (M, n_plant, K), with True as the input is seen. `mean` (M,) of the
     displacement where the output does not show it; `closing` turns a change of X without the reaction of the forces
-    (M, K) into one with it; `between`: the motion between the samples, where the plant is followed there.
+    (M, K) into one with it; `between`: the motion between the samples, where the plant is followed there; `shown`
+    (M, K) what the sensor shows, of which the `recorder` makes the output, None: as it is.
     """
 
     batch: Batch
@@ -85,6 +86,8 @@ class Flow:
     mean: FloatArray
     closing: Callable[[ComplexArray], ComplexArray] | None = None
     between: Between | None = None
+    shown: ComplexArray | None = None
+    recorder: Callable[[ComplexArray], ComplexArray] | None = None
     cache: dict[tuple[str, int, int], FloatArray] = field(default_factory=dict)
 
     @cached_property
@@ -117,6 +120,10 @@ class Flow:
         """The input over one period, (M, L)."""
         assert self.batch.signals is not None
         return self.batch.signals
+
+    def recorded(self, change: ComplexArray) -> ComplexArray:
+        """A change of what the sensor shows (…, M, K) as it is recorded."""
+        return change if self.recorder is None else self.recorder(change)
 
     def through(self, change: ComplexArray) -> ComplexArray:
         """A change of the core (M, K), with the reaction of the forces to it, as it leaves the path behind."""

@@ -1,7 +1,7 @@
 """Steady response of a plant with effects, in the frequency domain."""
 
 import dataclasses
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from identification.places.loop import Loop
 from identification.places.motion import displacement, flow_rate
 from identification.places.nonlinear import Actuator, Added, Feedback, Sensor
 from identification.places.place import Effect, Flow, Setting, passing
+from identification.places.recorder import Recorder
 from identification.places.steady import Closing, steady
 from identification.signals import HeldInput
 
@@ -27,7 +28,7 @@ FOLLOWED = 2
 def simulate(setting: Setting, acting: Sequence[Acting], batch: Batch, start: Flow | None = None) -> Flow:
     """The signals of a batch at the coefficients of `setting` for effects with amplitudes e (shapes, M).
 
-        u → g(u) → [ X = G (U − F{f(q, q̇)}) ] → + modes → · factor, + parallel → h(y) → + d(t)
+        u → g(u) → [ X = G (U − F{f(q, q̇)}) ] → + modes → · factor, + parallel → h(y) → + d(t) → recorder
 
     `start`: signals to begin the search for the steady state with; without them it is looked for at forces that grow.
     Raises NoSteadyStateError when there is none to be found, and MisuseError for effects that need records when the
@@ -117,14 +118,29 @@ def _shown(
     if held is not None and path.acts:
         linear = linear + images(setting, acting, batch.omega, held) * loop.entering
     linear = linear + _aliased(setting, loop, core, mean)
-    output = _measured(linear, acting, batch)
+    shown, recorder = _measured(linear, acting, batch), _recorder(acting, batch)
+    output = shown if recorder is None else recorder(shown)
     output, factor = output + batch.transient(output), path.factor * np.ones_like(core)
     made = (loop.response, loop.entry, loop.entering, drive, core, factored, linear, output, factor, tuple(acting))
 
     def gradient(seen: bool) -> ComplexArray:
         return core_gradient(setting, acting, batch.omega, held if seen else None, seen)
 
-    return Flow(batch, setting, *made, gradient, mean, closing, loop.between)
+    return Flow(batch, setting, *made, gradient, mean, closing, loop.between, shown, recorder)
+
+
+def _recorder(acting: Sequence[Acting], batch: Batch) -> Callable[[ComplexArray], ComplexArray] | None:
+    """What the recorder makes of lines (…, M, K) of the output; None where it changes nothing."""
+    found = [(effect, e[0]) for effect, e in acting if isinstance(effect, Recorder) and np.any(e)]
+    if not found:
+        return None
+
+    def recorded(lines: ComplexArray) -> ComplexArray:
+        for effect, e in found:
+            lines = effect.recorded(e, lines, batch)
+        return lines
+
+    return recorded
 
 
 def _aliased(setting: Setting, loop: Loop, core: ComplexArray, mean: FloatArray) -> ComplexArray:
