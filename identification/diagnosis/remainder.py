@@ -96,16 +96,27 @@ class SmoothRemainder:
 def rest(found: Fit, noise: float = 1.0) -> float:
     """‖Y − Ŷ‖/‖Y‖ without what noise has in it: the root of Σ|Y − Ŷ|² − Σσ² over all lines to that of |Y|², or 0.
 
-    `noise`: by how much the variances are larger than stated, each line counted for what the fit leaves of it.
+    `noise`: by how much the variances are larger than stated, each line counted for what the fit leaves of it. Where
+    the noise of a record was found from what the model leaves, at least what lies in its general directions counts, as
+    far as that is more than noise puts there.
     """
     left = size = 0.0
     share = 1 - len(found.tangents) / found.rows.count
-    for batch, flow, scale in zip(found.rows.batches, found.flows, found.rows.scales, strict=True):
+    judged = found.rows.parts(found.rows.judged(found.residual))
+    freedom = found.rows.parts(found.rows.shares)
+    pairs = zip(found.rows.batches, found.flows, found.rows.scales, strict=True)
+    for (batch, flow, scale), part, free in zip(pairs, judged, freedom, strict=True):
         used = np.isfinite(batch.variances)
-        expected = share * noise * scale**2 * np.where(batch.real, 0.5, 1.0) * batch.variances
+        power = scale**2 * np.where(batch.real, 0.5, 1.0) * batch.variances
+        expected = share * noise * power
         if batch.varied is not None:
             expected = expected + np.sum(abs(batch.varied) ** 2, axis=1)
-        left += float(np.sum(np.where(used, abs(batch.outputs - flow.output) ** 2 - expected, 0.0)))
+        beyond = float(np.sum(np.where(used, abs(batch.outputs - flow.output) ** 2 - expected, 0.0)))
+        if batch.general is not None:
+            excess = max(0.0, 1 - float(free.sum()) / max(float(part @ part), np.finfo(float).tiny))
+            seen = float(np.sum(np.where(used, abs(batch.complex_residual(part)) ** 2 * power, 0.0)))
+            beyond = max(beyond, excess * seen)
+        left += beyond
         size += float(np.sum(np.where(used & (batch.classes == EXCITED), abs(batch.outputs) ** 2, 0.0)))
     return float(np.sqrt(max(left, 0.0) / size)) if size > 0 else 0.0
 

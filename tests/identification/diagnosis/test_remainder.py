@@ -4,6 +4,9 @@ import numpy as np
 import pytest
 from scipy.stats import kstest
 
+from benchmarks.campaigns.campaign import write
+from benchmarks.campaigns.kinds import kinds
+from benchmarks.cases.reading import read, stated
 from identification.comparison.gather import gather
 from identification.diagnosis.diagnose import diagnose, misfit, rows_of
 from identification.diagnosis.remainder import SmoothRemainder, rest
@@ -116,3 +119,12 @@ def test_the_null_is_that_of_the_draws():
     p = np.array([misfit("", fitted(responses(seed, 0.05)), seed).p_value for seed in range(100, 160)])
     below = p[p < 0.5]
     assert kstest(2 * below, "uniform").pvalue > 1e-3
+
+
+def test_noise_found_from_what_a_wrong_model_leaves_does_not_make_that_immaterial(tmp_path):
+    """A hardening spring of half the output under a random telegraph that does not repeat."""
+    made = kinds()["free_cubic"]("spring", np.random.default_rng([11, *b"free_cubic"]))
+    write(tmp_path, [made])
+    case = read(stated(tmp_path)[0], tmp_path)
+    rows = rows_of(case.model, gather(case.fitted))
+    assert rest(fit(case.model, rows, iterations=40)) > 0.1
