@@ -25,6 +25,8 @@ from oed.whole_periods import whole_periods
 COVERED = 1e-9
 MET = 1e-6
 WHOLE = 0.01
+MOST_NAMED = 3
+NAMED = 0.05
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,15 +40,17 @@ class DesignedExperiment:
 
 @dataclass(frozen=True)
 class Binding:
-    """What holds the energy up: the `index`-th target or the cap of the `index`-th operating point.
+    """What holds the energy up: the `index`-th target, cap or limit, a cap or limit at the `point`-th operating point.
 
     `multiplier` is, for a target, how much the energy grows per unit of growth of R (relative to both); for a cap, the
-    energy that one unit of a higher cap would save.
+    energy that one unit of a higher cap would save; for a limit, how much energy a unit of growth of the mean square
+    that it allows would save (relative to both).
     """
 
-    what: Literal["target", "cap"]
+    what: Literal["target", "cap", "limit"]
     index: int
     multiplier: float
+    point: int | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,7 +120,7 @@ def designed(problem: DesignProblem, statement: Statement, progress: Progress | 
         return _unreachable(problem, problem_scaled)
     solution, problem_scaled = _solved(problem_scaled, progress)
     if isinstance(solution, Shortfall):
-        return _unreachable(problem, _shortfall_advice(solution))
+        return _unreachable(problem, _shortfall_advice(problem_scaled, solution))
     if not solution.blocks:
         advice = "the solver found no spectra that meet the targets; relax the narrowest of the targets or the caps"
         return _unreachable(problem, Outcome("not_converged", advice, solution.iterations))
@@ -173,10 +177,15 @@ def _binding(problem: ScaledProblem, solution: CertifiedSpectra) -> tuple[Bindin
     targets = [Binding("target", int(i), float(by_target[i])) for i in np.flatnonzero(by_target > 1e-4)]
     places = problem.pricing.places
     caps = [
-        Binding("cap", int(places[m]), float(solution.cap_prices[m]))
+        Binding("cap", int(places[m]), float(solution.cap_prices[m]), int(places[m]))
         for m in np.flatnonzero(solution.cap_prices > 1e-4)
     ]
-    return (*targets, *caps)
+    relative = solution.tolls / solution.energy
+    limits = [
+        Binding("limit", number, float(relative[number, m]), int(places[m]))
+        for number, m in np.argwhere(relative > 1e-4).tolist()
+    ]
+    return (*targets, *caps, *limits)
 
 
 def _described(problem: DesignProblem, statement: Statement, found: _Found) -> Design:
@@ -259,14 +268,35 @@ def _gap(lower_bound: float, energy: float) -> float:
     return max(1 - lower_bound / energy, 0.0) if energy > 0 else 0.0
 
 
-def _shortfall_advice(shortfall: Shortfall) -> Outcome:
+def _shortfall_advice(problem: ScaledProblem, shortfall: Shortfall) -> Outcome:
     share = 1 - shortfall.least
     looser = f"relax all standard deviations by a factor {_rounded_up(share**-0.5):g}, or " if share > 0 else ""
+    limited = bool(problem.original.plant_limits)
+    under = "the energy caps and limits" if limited else "the energy caps"
     return Outcome(
         "infeasible",
-        f"under the energy caps at most {100 * share:.3g} % of the information asked for can be reached: {looser}raise"
-        " the caps, allow more operating points, samples or levels, or use prior experiments",
+        f"under {under} at most {100 * share:.3g} % of the information asked for can be reached"
+        f"{_in_the_way(problem, shortfall) if limited else ''}: {looser}raise the {'limits' if limited else 'caps'},"
+        " allow more operating points, samples or levels, or use prior experiments",
     )
+
+
+def _in_the_way(problem: ScaledProblem, shortfall: Shortfall) -> str:
+    """The limits and caps that cost most of what is missing, and by which factor all of them would have to grow.
+
+    Scaling all by κ scales what can be learnt, so κ (1 − t) = 1 for the least share t that is missing.
+    """
+    paid = np.vstack([shortfall.tolls, shortfall.cap_prices])
+    words = [*(limit.words for limit in problem.original.plant_limits), "the energy cap"]
+    most = [divmod(int(i), paid.shape[1]) for i in np.argsort(-paid, axis=None)[:MOST_NAMED]]
+    named = [
+        f"{words[number]} at ({', '.join(f'{value:g}' for value in problem.points[m])})"
+        for number, m in most
+        if paid[number, m] > NAMED * paid.sum()
+    ]
+    factor = 1 / max(1 - shortfall.least, 1e-12)
+    grown = f" (power × {_rounded_up(factor):g}, with all others alike, would do)"
+    return f"; in the way: {'; '.join(named)}{grown}"
 
 
 def _rounded_up(factor: float) -> float:

@@ -16,6 +16,8 @@ from oed.information import sensitivity_moments
 from oed.problem import DecisionTarget, DesignProblem
 from oed.spectra.fir import FirSpectra
 
+MIDPOINTS = 20_000
+
 
 @dataclass(frozen=True, eq=False)
 class DirectDesign:
@@ -31,8 +33,10 @@ def direct_design(problem: DesignProblem) -> DirectDesign:
 
         min Σ_m c_{m,0}   s.t.   Σ_m (c_{m,0} X_{m,0} + 2 Σ_i c_{m,i} X_{m,i}) + P_G⁻¹ ⪰ R_j,   c_{m,0} ≤ α_m,
         Φ_m ≥ 0 as  c_{m,i} = Σ_s [Q_m]_{s,s+i},  Q_m ⪰ 0                          [Ghosh2018, (15), (19), (20)]
+        c_{m,0} w_{m,0} + 2 Σ_i c_{m,i} w_{m,i} ≤ N_p for every limit of the plant
 
-    with X_{m,i} = (1/2π) ∫ Re(a a*) cos(iω) dω and c in units of energy. Raises MisuseError for other families than
+    with X_{m,i} = (1/2π) ∫ Re(a a*) cos(iω) dω, w_{m,i} likewise of what the limit weighs, and c in units of energy.
+    Raises MisuseError for other families than
     FIR spectra and for a box.
     """
     if not isinstance(problem.family, FirSpectra) or problem.box or problem.model.effects:
@@ -52,6 +56,10 @@ def direct_design(problem: DesignProblem) -> DirectDesign:
     constraints = [information + prior >> target / energy for target in targets]
     constraints += [positive for m in range(len(problem.points)) for positive in _positive(coefficients[m], degree)]
     constraints += [coefficients[m, 0] <= cap / energy for m, cap in enumerate(problem.limits) if np.isfinite(cap)]
+    if problem.plant_limits:
+        taken = _limit_moments(problem, degree)
+        room = problem.samples / energy
+        constraints += [coefficients[m] @ row <= room for each in taken for m, row in enumerate(each) if row.any()]
     task = cvxpy.Problem(cvxpy.Minimize(cvxpy.sum(coefficients[:, 0])), constraints)
     task.solve(solver=cvxpy.CLARABEL)
     if coefficients.value is None:
@@ -59,6 +67,13 @@ def direct_design(problem: DesignProblem) -> DirectDesign:
     accurate = task.status == cvxpy.OPTIMAL
     outcome = Outcome("converged") if accurate else Outcome("not_converged", f"the solver answers {task.status}")
     return DirectDesign(outcome, float(task.value) * energy, coefficients.value * energy)
+
+
+def _limit_moments(problem: DesignProblem, degree: int) -> FloatArray:
+    """The moments (L, M, degree + 1) of the shares that limits weigh, twice those above zero, by the midpoint rule."""
+    phase = (np.arange(MIDPOINTS) + 0.5) * np.pi / MIDPOINTS
+    cosines = np.cos(np.outer(phase, np.arange(degree + 1))) * np.where(np.arange(degree + 1) == 0, 1.0, 2.0)
+    return np.asarray(problem.share(phase / problem.step) @ cosines / MIDPOINTS)
 
 
 def _information(moments: FloatArray, coefficients: cvxpy.Variable) -> Any:

@@ -8,7 +8,7 @@ import clarabel
 import numpy as np
 from scipy.sparse import csc_array
 
-from identification.arrays import FloatArray, IntArray
+from identification.arrays import BoolArray, FloatArray, IntArray
 from oed.low_rank_master import solve_low_rank
 from oed.spectra.family import Block
 
@@ -17,11 +17,14 @@ MOST_GENERAL = 10
 
 @dataclass(frozen=True, eq=False)
 class MasterSolution:
-    """Weights W of the blocks, multipliers Z (J, k, k) of the targets and μ (M,) of the caps, and the shortfall t."""
+    """Weights W of the blocks, multipliers Z (J, k, k) of the targets, μ (M,) of the caps and ν (L, M) of the limits,
+    and the shortfall t.
+    """
 
     weights: list[FloatArray]
     prices: FloatArray
     cap_prices: FloatArray
+    tolls: FloatArray
     shortfall: float
     solved: bool
 
@@ -36,26 +39,36 @@ def solve_master(
 ) -> MasterSolution:
     """The least energy over blocks b for targets R_j (J, k, k), under caps α (M,) (infinite: none).
 
-        min Σ_b tr W_b   s.t.   Σ_b Σ_rs (W_b)_rs I_b,rs ⪰ R_j for all j,   Σ_{b at m} tr W_b ≤ α_m,   W_b ⪰ 0
+        min Σ_b tr W_b   s.t.   Σ_b Σ_rs (W_b)_rs I_b,rs ⪰ R_j for all j,   Σ_{b at m} tr W_b ≤ α_m,   W_b ⪰ 0,
+                                Σ_{b at m} tr U_b,l W_b ≤ 1 for every limit l
 
     With `shortfall_only` the energy is free and the least t ≥ 0 is sought for which the targets (1 − t) R_j are met.
-    Single spectra that tell little more than one direction each, of many parameters and without caps, are solved by
-    `low_rank_master`, everything else by the general conic solver.
+    Single spectra that tell little more than one direction each, of many parameters and without caps or limits, are
+    solved by `low_rank_master`, everything else by the general conic solver.
     """
-    if targets.shape[-1] > MOST_GENERAL and not np.isfinite(caps).any() and all(block.parts for block in blocks):
+    free = not np.isfinite(caps).any() and all(block.use is None for block in blocks)
+    if targets.shape[-1] > MOST_GENERAL and free and all(block.parts for block in blocks):
         found = solve_low_rank(blocks, targets, accuracy)
         if found.solved:
-            return MasterSolution(list(found.weights[:, None, None]), found.prices, np.zeros(len(caps)), 0.0, True)
+            nothing = np.zeros(len(caps))
+            return MasterSolution(
+                list(found.weights[:, None, None]), found.prices, nothing, nothing[None, :0], 0.0, True
+            )
     layout = _Layout([len(block.shapes) for block in blocks])
     capped = np.intersect1d(np.flatnonzero(np.isfinite(caps)), [block.point for block in blocks])
     k, j = targets.shape[-1], len(targets)
     information = np.hstack([_information_columns(block) for block in blocks])
-    rows = [-layout.cone_rows(), _cap_rows(blocks, layout, capped), -np.tile(information, (j, 1))]
+    used, use_rows = _use_rows(blocks, layout, len(caps))
+    rows = [-layout.cone_rows(), _cap_rows(blocks, layout, capped), use_rows, -np.tile(information, (j, 1))]
     goal = np.concatenate([svec(target) for target in targets])
-    right = np.concatenate([np.zeros(layout.size), caps[capped], -goal])
+    right = np.concatenate([np.zeros(layout.size), caps[capped], np.ones(len(use_rows)), -goal])
     cost = layout.energy.copy()
     matrix = np.vstack(rows)
-    cones = [*layout.cones(), clarabel.NonnegativeConeT(len(capped)), *[clarabel.PSDTriangleConeT(k)] * j]
+    cones = [
+        *layout.cones(),
+        clarabel.NonnegativeConeT(len(capped) + len(use_rows)),
+        *[clarabel.PSDTriangleConeT(k)] * j,
+    ]
     if shortfall_only:
         matrix = np.vstack([np.column_stack([matrix, np.zeros(len(matrix))]), np.eye(1, layout.size + 1, layout.size)])
         matrix[-1 - len(goal) : -1, -1] = -goal
@@ -64,12 +77,15 @@ def solve_master(
         cones.append(clarabel.NonnegativeConeT(1))
     solution = _solve(cost, matrix, right, cones, accuracy)
     x, z = np.array(solution.x), np.array(solution.z)[layout.size :]
-    prices = np.array([smat(part, k) for part in z[len(capped) : len(capped) + len(goal)].reshape(j, -1)])
+    first = len(capped) + len(use_rows)
+    prices = np.array([smat(part, k) for part in z[first : first + len(goal)].reshape(j, -1)])
+    tolls = np.zeros(used.shape)
+    tolls[used] = z[len(capped) : first]
     cap_prices = np.zeros(len(caps))
     cap_prices[capped] = z[: len(capped)]
     shortfall = float(x[-1]) if shortfall_only else 0.0
     solved = str(solution.status) in ("Solved", "AlmostSolved", "InsufficientProgress")
-    return MasterSolution(layout.weights(x), prices, cap_prices, shortfall, solved)
+    return MasterSolution(layout.weights(x), prices, cap_prices, tolls, shortfall, solved)
 
 
 def svec(matrix: FloatArray) -> FloatArray:
@@ -131,6 +147,17 @@ def _cap_rows(blocks: Sequence[Block], layout: _Layout, capped: IntArray) -> Flo
     for block, part in zip(blocks, layout.slices, strict=True):
         rows[capped == block.point, part] = layout.energy[part]
     return rows
+
+
+def _use_rows(blocks: Sequence[Block], layout: _Layout, places: int) -> tuple[BoolArray, FloatArray]:
+    """Which limits the blocks take something of at which points (L, M), and what, one row each."""
+    limits = 0 if blocks[0].use is None else len(blocks[0].use)
+    rows = np.zeros((limits, places, layout.size))
+    for block, part in zip(blocks, layout.slices, strict=True):
+        if block.use is not None:
+            rows[:, block.point, part] = svec(block.use)
+    used = np.any(rows != 0, axis=-1)
+    return used, rows[used]
 
 
 def _solve(

@@ -11,6 +11,7 @@ from identification.comparison.batch import Batch
 from identification.errors import MisuseError, RangeError, ShapeError
 from identification.models.model import Model
 from oed.decisions import Demand
+from oed.limits.limit import Limit, shares_of
 from oed.spectra.family import SpectrumFamily
 
 SYMMETRIC = 1e-9
@@ -47,7 +48,7 @@ class DesignProblem:
     none (Remark 5); `prior_information` (k, k): P⁻¹ of what earlier experiments told (Section 4), in the order θ_G,
     effects, θ_H; in its place `prior_experiments`, which also tell about effects that are not in the model; `band` in
     rad/s; `sample_time` of the input in seconds, needed for models in continuous time; `tolerance`: relative gap to be
-    certified.
+    certified; `plant_limits`: what the plant may not do, each bound in itself (`oed.limits`).
     """
 
     model: Model
@@ -62,6 +63,7 @@ class DesignProblem:
     sample_time: float | None = None
     tolerance: float = 1e-4
     box: bool = False
+    plant_limits: tuple[Limit, ...] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "points", self.model.dependence.points(self.points))
@@ -79,6 +81,8 @@ class DesignProblem:
                 " enough, state how large it is",
                 "noise_variance",
             )
+        if self.box and self.plant_limits:
+            raise MisuseError("limits of the plant belong to the points of a grid; give a grid", "limits")
         self._check_caps()
         self._check_prior()
         self._check_band()
@@ -92,6 +96,10 @@ class DesignProblem:
     def limits(self) -> FloatArray:
         """The energy caps α (M,), infinite where there is none."""
         return np.full(len(self.points), np.inf) if self.caps is None else self.caps
+
+    def share(self, omega: FloatArray) -> FloatArray:
+        """The share (L, M, F) of each of the plant's limits that a mean square of one at ω (F,) in rad/s takes."""
+        return shares_of(self.plant_limits, self.model, self.points, omega)
 
     @property
     def size(self) -> int:

@@ -26,6 +26,7 @@ from oed.subject import Subject
 MOST_ADDED = 3
 NEAR = 0.01
 MET = 1e-6
+OVER = 1e-3
 SMOOTH = 1024
 CONFIDENCE = 0.95
 MOST_UNSTABLE = 0.5
@@ -261,6 +262,10 @@ def _scaled(problem: DesignProblem, found: Design, bound: float, scale: float, s
         if one.energy > cap * (1 + 1e-6)
     ]
     outcome = found.outcome
+    over = next((one for one in experiments if problem.plant_limits and _over(problem, one, samples)), None)
+    if over is not None:
+        where = ", ".join(f"{value:g}" for value in over.operating_point)
+        outcome = Outcome("infeasible", f"the promise would take more than the limits at ({where}) allow")
     if broken:
         where = ", ".join(f"{value:g}" for value in broken[0])
         outcome = Outcome("infeasible", f"the promise would take more energy than the cap at ({where}) allows")
@@ -275,6 +280,17 @@ def _scaled(problem: DesignProblem, found: Design, bound: float, scale: float, s
         samples=samples,
         expected_covariance=covariance_of(prior, np.asarray(block_diag(told, heard))),
     )
+
+
+def _over(problem: DesignProblem, experiment: DesignedExperiment, samples: int) -> bool:
+    """Whether an experiment of so many samples takes more than a limit of the plant allows."""
+    spectrum = experiment.spectrum
+    period = spectrum.samples if isinstance(spectrum, LineSpectrum) else SMOOTH
+    indices, energies = spectrum.line_energies(period, problem.step)
+    omega = np.asarray(2 * np.pi * indices / (period * problem.step), dtype=np.float64)
+    place = int(np.flatnonzero(np.all(problem.points == np.array(experiment.operating_point), axis=1))[0])
+    shares = problem.share(omega)[:, place][:, energies > 0]
+    return bool(np.any(shares @ energies[energies > 0] > samples * (1 + OVER)))
 
 
 def _times(experiment: DesignedExperiment, scale: float) -> DesignedExperiment:

@@ -62,6 +62,8 @@ def scaled(problem: DesignProblem, statement: Statement, asking: IntArray) -> Sc
     that a target asks for.
     """
     pricing = statement.pricing.within(problem.limits, problem.samples)
+    if problem.plant_limits:
+        pricing = pricing.restricted(problem.share)
     flat = np.sum([block.information[0, 0] for block in pricing.flat()], axis=0)
     k = statement.plant
     targets, pencils, unit = statement.targets[asking, :k, :k], [], 0.0
@@ -81,7 +83,7 @@ def scaled(problem: DesignProblem, statement: Statement, asking: IntArray) -> Sc
         problem,
         statement,
         problem.points[pricing.places],
-        pricing.transformed(basis),
+        pricing.transformed(basis, unit / problem.samples),
         basis.T @ targets @ basis / unit - np.diag(known),
         asking,
         pricing.limits(problem.limits, problem.samples) / unit,

@@ -15,6 +15,7 @@ from identification.errors import MisuseError, RangeError, ShapeError
 from identification.models.model import Model
 from identification.scheduling import OneVariableBasis, ParameterDependence
 from oed.decisions import Decision
+from oed.limits.limit import Limit
 
 if TYPE_CHECKING:
     from oed.robust import Kept
@@ -67,6 +68,19 @@ def energy_caps(request: DesignRequest, points: FloatArray, dependence: Paramete
             raise RangeError(f"{cap.operating_point} is none of the operating points to choose from", "energy_caps")
         limits[same] = cap.energy
     return limits
+
+
+def plant_limits(request: DesignRequest, model: Model, points: FloatArray) -> tuple[Limit, ...]:
+    """What the plant may not do; raises MisuseError that points to a limit at none of the operating points (M, s)."""
+    limits: list[Limit] = [given.build() for given in request.limits]
+    if limits and isinstance(request.operating_points, Box):
+        raise MisuseError("limits of the plant belong to the points of a grid; give a grid", "/limits")
+    for i, limit in enumerate(limits):
+        try:
+            limit.most(model, points)
+        except MisuseError as error:
+            raise MisuseError(str(error), f"/limits/{i}/operatingPoints") from error
+    return tuple(limits)
 
 
 def searched_model(request: DesignRequest, model: Model) -> Model:

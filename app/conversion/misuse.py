@@ -9,8 +9,10 @@ from identification.errors import MisuseError
 
 @contextmanager
 def pointing(pointers: Mapping[str, str], default: str = "", location: str = "body") -> Iterator[None]:
-    """Turn MisuseError into a problem; `pointers` from names of arguments to JSON pointers."""
+    """Turn MisuseError into a problem; `pointers` from arguments to JSON pointers, which are kept as they are."""
     try:
         yield
     except MisuseError as error:
-        raise UnprocessableError.at(pointers.get(error.field or "", default), str(error), location) from error
+        field = error.field or ""
+        pointer = field if field.startswith("/") else pointers.get(field, default)
+        raise UnprocessableError.at(pointer, str(error), location) from error

@@ -71,5 +71,6 @@ class Catalogue(CamelModel):
     )
     pole_regions: list[CatalogueEntry] = Field(description="where the poles of state-space models must lie")
     targets: list[CatalogueEntry] = Field(description="accuracy targets of designs")
+    limits: list[CatalogueEntry] = Field(description="what the plant may not do in a design")
     spectrum_families: list[CatalogueEntry] = Field(description="input spectra of designs")
     effects: list[EffectEntry] = Field(description="what a diagnosis looks for and models are extended by")

@@ -7,7 +7,7 @@ from pydantic import Field
 from app.arrays import ComplexVector, Vector
 from app.schemas.common import CamelModel, Double, Integer, Timestamp
 from app.schemas.experiments import Identifier
-from app.schemas.families import AccuracyTarget, SpectrumFamily
+from app.schemas.families import AccuracyTarget, Limit, SpectrumFamily
 from app.schemas.outcomes import OutcomeDocument
 from app.schemas.plants import LongText, OperatingPoint, Positive, SampleTime, Text
 from app.schemas.plug_ins import named_union
@@ -111,6 +111,9 @@ class DesignRequest(CamelModel):
     )
     band: Band | None = Field(default=None, description="frequencies that may be excited; null: all")
     energy_caps: EnergyCaps | None = None
+    limits: Annotated[list[Limit], Field(max_length=20)] = Field(
+        default_factory=list, description="what the plant may not do, over the samples of each experiment; on a grid"
+    )
     use_prior_information: bool = Field(
         default=False, description="count the accuracy that the model already has, and design what is missing"
     )
@@ -184,11 +187,13 @@ class DesignedExperimentDocument(CamelModel):
 class BindingDocument(CamelModel):
     """Something that the energy would be less without."""
 
-    what: Literal["target", "cap"]
-    target_index: Integer | None = Field(description="which of the targets, from zero; null for a cap")
-    operating_point: Vector | None = Field(description="where the cap is; null for a target")
+    what: Literal["target", "cap", "limit"]
+    target_index: Integer | None = Field(description="which of the targets, from zero; null for a cap or limit")
+    limit_index: Integer | None = Field(default=None, description="which of the limits, from zero; null for others")
+    operating_point: Vector | None = Field(description="where the cap or limit binds; null for a target")
     multiplier: Double | None = Field(
-        description="of a target, its share of the energy; of a cap, the energy that one unit more would save"
+        description="of a target, its share of the energy; of a cap, the energy that one unit more would save; of a"
+        " limit, the share of the energy that its mean square allowed to grow by its own size would save at this rate"
     )
 
 

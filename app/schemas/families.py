@@ -13,6 +13,7 @@ import identification.pole_regions
 import identification.spectral
 import identification.subspace
 import identification.varying
+import oed.limits
 import oed.spectra
 import oed.targets
 from app.schemas.plug_ins import PlugInDocument, PlugInFamily
@@ -65,6 +66,7 @@ VARYING_REFINEMENTS = PlugInFamily(
     "VaryingRefinement", "Refinement", identification.varying, parts=VARYING_ESTIMATORS, only=_refines
 )
 TARGETS = PlugInFamily("AccuracyTarget", "Target", oed.targets)
+LIMITS = PlugInFamily("Limit", "Limit", oed.limits)
 SPECTRUM_FAMILIES = PlugInFamily("SpectrumFamily", "Family", oed.spectra)
 
 FAMILIES = {
@@ -79,6 +81,7 @@ FAMILIES = {
     "varyingRefinements": VARYING_REFINEMENTS,
     "poleRegions": POLE_REGIONS,
     "targets": TARGETS,
+    "limits": LIMITS,
     "spectrumFamilies": SPECTRUM_FAMILIES,
 }
 
@@ -93,6 +96,7 @@ if TYPE_CHECKING:
     VaryingEstimator = PlugInDocument
     VaryingRefinement = PlugInDocument
     AccuracyTarget = PlugInDocument
+    Limit = PlugInDocument
     SpectrumFamily = PlugInDocument
 else:
     Basis = BASES.union
@@ -105,4 +109,5 @@ else:
     VaryingEstimator = VARYING_ESTIMATORS.union
     VaryingRefinement = VARYING_REFINEMENTS.union
     AccuracyTarget = TARGETS.union
+    Limit = LIMITS.union
     SpectrumFamily = SPECTRUM_FAMILIES.union

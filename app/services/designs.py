@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from app.container import Container
-from app.conversion.designs import candidate_points, energy_caps, searched_model
+from app.conversion.designs import candidate_points, energy_caps, plant_limits, searched_model
 from app.conversion.misuse import pointing
 from app.conversion.models import kept_model
 from app.errors import UnprocessableError
@@ -46,6 +46,7 @@ def payload(plant: Plant, model: Model, request: DesignRequest, experiments: Seq
         points = candidate_points(request, searched.dependence)
     with pointing(POINTERS, default="/energyCaps"):
         energy_caps(request, points, searched.dependence)
+        plant_limits(request, searched, points)
     if request.noise_variance is None and not known.noise_variance > 0:
         raise UnprocessableError.at("/modelId", "the model has no noise, so any experiment would be accurate enough")
     if not known.structure.is_discrete and request.sample_time_seconds is None:

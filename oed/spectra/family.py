@@ -1,6 +1,6 @@
 """What every family of spectra offers to the solver."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -24,6 +24,7 @@ class Block:
     The input energy is tr W and the information Σ_ab W_ab `information`_ab; `information` is (r, r, k, k). What the
     rows of `shapes` mean is known to the family alone. `parts`, of a single shape: the rows of the parts of the
     parameters between which there is no information; `columns` B (k, q): the information is B Bᵀ within each of them.
+    `use` (L, r, r): the share Σ_ab W_ab use_l,ab that the spectrum takes of each of L limits at its operating point.
     """
 
     point: int
@@ -31,6 +32,7 @@ class Block:
     information: FloatArray
     parts: tuple[slice, ...] = ()
     columns: FloatArray | None = None
+    use: FloatArray | None = None
 
     def factor(self, part: slice) -> FloatArray:
         """B (k_part, q) with the information B Bᵀ within a part."""
@@ -40,12 +42,19 @@ class Block:
         """Σ_ab W_ab information_ab, (k, k)."""
         return np.asarray(np.einsum("ab,abij->ij", weight, self.information))
 
+    def taken(self, weight: FloatArray) -> FloatArray:
+        """Σ_ab W_ab use_ab, (L,)."""
+        return np.zeros(0) if self.use is None else np.einsum("ab,lab->l", weight, self.use)
+
 
 def root(matrix: FloatArray) -> FloatArray:
     """L (k, r) with L Lᵀ the positive semidefinite matrix (k, k), few columns where it has few directions."""
     values, vectors = np.linalg.eigh(matrix)
     kept = values > NEGLIGIBLE * values.max(initial=0.0)
     return np.asarray(vectors[:, kept] * np.sqrt(values[kept]))
+
+
+Use = Callable[[FloatArray], FloatArray]
 
 
 class Spectrum(Protocol):
@@ -76,20 +85,31 @@ class Pricing(Protocol):
     def within(self, caps: FloatArray, samples: int) -> "Pricing":
         """The experiments that caps (M,) and `samples` allow."""
 
+    def restricted(self, share: Use) -> "Pricing":
+        """The same under limits, of which a mean square of one takes the share (L, M, F) at frequencies (F,)."""
+
     def flat(self) -> list[Block]:
         """At every point a spectrum of energy one that excites all frequencies of the band alike."""
 
     def best(
-        self, prices: FloatArray, charges: FloatArray, blocks: Sequence[Block], weights: Sequence[FloatArray]
+        self,
+        prices: FloatArray,
+        charges: FloatArray,
+        blocks: Sequence[Block],
+        weights: Sequence[FloatArray],
+        tolls: FloatArray | None = None,
     ) -> "Offer":
-        """The worth of the best spectra at prices Z (k, k), max ∫ a* Z a Φ over spectra Φ of energy one.
+        """The worth of the best spectra at prices Z (k, k), max ∫ (a* Z a − Σ_l ν_l w_l) Φ over Φ of energy one.
 
-        Worth trying is what is worth more than its charge (M,), or nearly so. `blocks` and `weights` are the solution
-        so far; the offered blocks contain it.
+        `tolls` ν (L, M) are the prices of the limits, of which a spectrum takes w_l. Worth trying is what is worth more
+        than its charge (M,), or nearly so. `blocks` and `weights` are the solution so far; the offered blocks contain
+        it.
         """
 
-    def transformed(self, basis: FloatArray) -> "Pricing":
-        """The same for the parameters `basis`⁻¹ θ_G, whose information is basisᵀ (·) basis."""
+    def transformed(self, basis: FloatArray, taken: float = 1.0) -> "Pricing":
+        """The same for the parameters `basis`⁻¹ θ_G, whose information is basisᵀ (·) basis, with what energy takes of
+        the limits times a factor.
+        """
 
     def spectrum(self, blocks: Sequence[Block], weights: Sequence[FloatArray]) -> Spectrum:
         """The spectrum that blocks of one local experiment make together."""

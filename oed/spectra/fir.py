@@ -1,25 +1,27 @@
 """Spectra of white noise through an FIR filter [Ghosh2018, (20)]."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from typing import Annotated, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy import fft
 
 from identification.arrays import FloatArray, IntArray
 from identification.comparison.batch import Batch
 from identification.errors import RangeError
 from identification.models.model import Model
 from oed.hypothesis import response_batch
-from oed.spectra.family import NEARLY, Block, Offer, foremost
+from oed.spectra.family import NEARLY, Block, Offer, Use, foremost
 from oed.subject import Subject
 
 LARGEST_DEGREE = 1000
 MOST_NEW = 3
 NEGLIGIBLE = 1e-5
 REFERENCE = 257
+RESTRICTED = 2**14
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,10 +91,14 @@ class FirSpectra:
 
 @dataclass(frozen=True, eq=False)
 class FirPricing:
-    """FIR filters h at M points: Φ = |h|², `moments` (M, L + 1, k, k); a block's shapes are orthonormal filters h."""
+    """FIR filters h at M points: Φ = |h|², `moments` (M, L + 1, k, k); a block's shapes are orthonormal filters h.
+
+    `use` (l, M, L + 1): the moments (1/2π) ∫ w cos(iΩ) dΩ of what energy takes of each limit.
+    """
 
     moments: FloatArray
     sample_time: float
+    use: FloatArray | None = None
 
     @property
     def places(self) -> IntArray:
@@ -107,16 +113,34 @@ class FirPricing:
         """All experiments; each may have as little energy as it is given."""
         return self
 
+    def restricted(self, share: Use) -> "FirPricing":
+        """With moments of what the limits charge; raises RangeError where they leave out frequencies altogether."""
+        omega = np.linspace(0.0, np.pi / self.sample_time, RESTRICTED + 1)
+        shares = share(omega)
+        if not np.all(np.isfinite(shares)):
+            raise RangeError(
+                "an FIR spectrum cannot leave out a band; limit its power there, or use line spectra", "limits"
+            )
+        moments = fft.irfft(shares, 2 * RESTRICTED, axis=-1)[..., : self.moments.shape[1]]
+        return replace(self, use=np.asarray(moments))
+
     def flat(self) -> list[Block]:
         """White noise."""
         impulse = np.eye(1, self.moments.shape[1])
-        return [Block(m, impulse, power[None, None]) for m, power in enumerate(self.moments[:, 0])]
+        return self._blocks(dict.fromkeys(range(len(self.moments)), impulse))
 
     def best(
-        self, prices: FloatArray, charges: FloatArray, blocks: Sequence[Block], weights: Sequence[FloatArray]
+        self,
+        prices: FloatArray,
+        charges: FloatArray,
+        blocks: Sequence[Block],
+        weights: Sequence[FloatArray],
+        tolls: FloatArray | None = None,
     ) -> Offer:
         """The leading eigenvalue of the Toeplitz matrix of tr(Z · moments); its eigenvectors join those in use."""
         lags = self.moments.reshape(*self.moments.shape[:2], -1) @ prices.ravel()
+        if tolls is not None and self.use is not None:
+            lags = lags - np.einsum("lm,lmi->mi", tolls, self.use)
         order = np.arange(lags.shape[1])
         values, vectors = np.linalg.eigh(lags[:, abs(order[:, None] - order)])
         worth = values[:, -1]
@@ -130,9 +154,10 @@ class FirPricing:
             shapes[m] = _orthonormal(shapes[m], new) if m in shapes else new
         return Offer(worth, self._blocks(shapes))
 
-    def transformed(self, basis: FloatArray) -> "FirPricing":
+    def transformed(self, basis: FloatArray, taken: float = 1.0) -> "FirPricing":
         """The same for the parameters basis⁻¹ θ_G."""
-        return FirPricing(basis.T @ self.moments @ basis, self.sample_time)
+        use = None if self.use is None else taken * self.use
+        return replace(self, moments=basis.T @ self.moments @ basis, use=use)
 
     def spectrum(self, blocks: Sequence[Block], weights: Sequence[FloatArray]) -> FirSpectrum:
         """c_i, the i-th autocorrelation of the filters, summed with their weights."""
@@ -149,8 +174,10 @@ class FirPricing:
         lags[:, 1:] *= 2
         made, start = [], 0
         for (point, filters), r in zip(shapes.items(), sizes, strict=True):
-            information = lags[start : start + r * r] @ self.moments[point].reshape(taps, -1)
-            made.append(Block(point, filters, information.reshape(r, r, k, k)))
+            own = lags[start : start + r * r]
+            information = own @ self.moments[point].reshape(taps, -1)
+            use = None if self.use is None else (self.use[:, point] @ own.T).reshape(-1, r, r)
+            made.append(Block(point, filters, information.reshape(r, r, k, k), use=use))
             start += r * r
         return made
 

@@ -7,12 +7,12 @@ from typing import Annotated, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from identification.arrays import FloatArray, IntArray
+from identification.arrays import BoolArray, FloatArray, IntArray
 from identification.comparison.batch import Batch
 from identification.errors import RangeError
 from identification.models.model import Model
 from oed.hypothesis import response_batch
-from oed.spectra.family import NEARLY, Block, Offer, foremost, root
+from oed.spectra.family import NEARLY, Block, Offer, Use, foremost, root
 from oed.subject import Subject
 
 MOST_SENSITIVITIES = 2**26
@@ -109,7 +109,8 @@ class LineSpectra:
 class LinePricing:
     """The lines at M points: `rows` (M, F, 2, k), Re a and Im a; products count within each of the `parts` of k alone.
 
-    A block's only shape holds the number of its line.
+    `use` (L, M, F): what energy on each line takes of each limit, infinite where it must not be. A block's only
+    shape holds the number of its line.
     """
 
     frequencies: FloatArray
@@ -117,6 +118,7 @@ class LinePricing:
     samples: int
     rows: FloatArray
     parts: tuple[slice, ...]
+    use: FloatArray | None = None
 
     @property
     def places(self) -> IntArray:
@@ -131,15 +133,32 @@ class LinePricing:
         """All experiments; each may have as little energy as it is given."""
         return self
 
+    def restricted(self, share: Use) -> "LinePricing":
+        """With what the limits charge on every line; lines that must not be used tell nothing."""
+        use = share(self.frequencies)
+        closed = np.any(np.isinf(use), axis=0)
+        if closed.all():
+            raise RangeError("the forbidden bands leave no line at any operating point", "limits")
+        return replace(self, use=use, rows=np.where(closed[:, :, None, None], 0.0, self.rows))
+
     def flat(self) -> list[Block]:
-        """Equal energy on all lines, as a block without a line of its own."""
-        return [self._flat(m) for m in range(len(self.rows))]
+        """Equal energy on all lines, as a block without a line of its own, where there is a line."""
+        return [self._flat(m) for m in range(len(self.rows)) if self._open(m).any()]
 
     def best(
-        self, prices: FloatArray, charges: FloatArray, blocks: Sequence[Block], weights: Sequence[FloatArray]
+        self,
+        prices: FloatArray,
+        charges: FloatArray,
+        blocks: Sequence[Block],
+        weights: Sequence[FloatArray],
+        tolls: FloatArray | None = None,
     ) -> Offer:
         """a* Z a on all lines; offered are the highest peaks that are worth their charge, and the lines in use."""
         worth = self._worth(prices)
+        if tolls is not None and self.use is not None:
+            closed = np.any(np.isinf(self.use), axis=0)
+            charged = np.einsum("lm,lmf->mf", tolls, np.where(closed, 0.0, self.use))
+            worth = np.where(closed, 0.0, worth - charged)
         highest = worth.max(axis=1)
         padded = np.pad(worth, [(0, 0), (1, 1)], constant_values=-np.inf)
         peak = (worth >= padded[:, :-2]) & (worth >= padded[:, 2:])
@@ -151,19 +170,21 @@ class LinePricing:
         new_blocks = [self._block(m, f) for m, f in new if (m, f) not in known]
         return Offer(highest, in_use + new_blocks)
 
-    def transformed(self, basis: FloatArray) -> "LinePricing":
+    def transformed(self, basis: FloatArray, taken: float = 1.0) -> "LinePricing":
         """The same for the parameters basis⁻¹ θ_G."""
         places = [np.flatnonzero(np.any(basis[part] != 0, axis=0)) for part in self.parts]
         parts = tuple(slice(int(place[0]), int(place[-1]) + 1) if len(place) else slice(0, 0) for place in places)
         flat = self.rows.reshape(-1, self.rows.shape[-1]) @ basis
-        return replace(self, rows=flat.reshape(*self.rows.shape[:-1], -1), parts=parts)
+        use = None if self.use is None else taken * self.use
+        return replace(self, rows=flat.reshape(*self.rows.shape[:-1], -1), parts=parts, use=use)
 
     def spectrum(self, blocks: Sequence[Block], weights: Sequence[FloatArray]) -> LineSpectrum:
         """The lines of blocks of one point, in the order of frequency."""
         energies = np.zeros(len(self.frequencies))
         for block, weight in zip(blocks, weights, strict=True):
             line = int(block.shapes[0, 0])
-            energies[slice(None) if line < 0 else line] += weight[0, 0] / (len(energies) if line < 0 else 1)
+            lines = np.flatnonzero(self._open(block.point)) if line < 0 else [line]
+            energies[lines] += weight[0, 0] / len(lines)
         used = energies > 0
         return LineSpectrum(self.frequencies[used], energies[used], self.indices[used], self.samples)
 
@@ -181,12 +202,21 @@ class LinePricing:
         return worth
 
     def _flat(self, point: int) -> Block:
-        rows = self.rows[point].reshape(-1, self.rows.shape[-1]) / np.sqrt(len(self.frequencies))
-        return Block(int(point), np.full((1, 1), -1.0), self._information(rows), self.parts)
+        lines = self._open(point)
+        rows = self.rows[point, lines].reshape(-1, self.rows.shape[-1]) / np.sqrt(np.count_nonzero(lines))
+        use = None if self.use is None else self.use[:, point, lines].mean(axis=-1)[:, None, None]
+        return Block(int(point), np.full((1, 1), -1.0), self._information(rows), self.parts, use=use)
+
+    def _open(self, point: int) -> BoolArray:
+        """The lines (F,) that may be used."""
+        if self.use is None:
+            return np.ones(len(self.frequencies), dtype=np.bool_)
+        return np.asarray(np.all(np.isfinite(self.use[:, point]), axis=0))
 
     def _block(self, point: int, line: int) -> Block:
         rows = self.rows[point, line]
-        return Block(int(point), np.full((1, 1), float(line)), self._information(rows), self.parts, rows.T)
+        use = None if self.use is None else self.use[:, point, line][:, None, None]
+        return Block(int(point), np.full((1, 1), float(line)), self._information(rows), self.parts, rows.T, use)
 
     def _information(self, rows: FloatArray) -> FloatArray:
         """(1, 1, k, k)"""

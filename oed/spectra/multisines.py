@@ -14,7 +14,7 @@ from identification.errors import RangeError
 from identification.models.model import Model
 from identification.places.steady import NoSteadyStateError
 from oed.hypothesis import noise_variances
-from oed.spectra.family import NEARLY, Block, Offer, foremost
+from oed.spectra.family import NEARLY, Block, Offer, Use, foremost
 from oed.subject import Subject
 
 MOST_CANDIDATES = 20_000
@@ -263,8 +263,32 @@ class MultisinePricing:
         per_candidate = (self.numbers[kept], self.places[kept], self.energies[kept], self.information[kept])
         return MultisinePricing(self.signals, *per_candidate)
 
+    def restricted(self, share: Use) -> "MultisinePricing":
+        """The candidates that keep all limits at their level; raises RangeError when there is none."""
+        omega = np.asarray(np.unique(np.concatenate([one.frequencies for one in self.signals])), dtype=np.float64)
+        shares = share(omega)
+        squares = np.zeros((len(self.signals), len(omega)))
+        for square, signal in zip(squares, self.signals, strict=True):
+            square[np.searchsorted(omega, signal.frequencies)] = abs(signal.phasors) ** 2 / 2
+        kept = [
+            c
+            for c, (m, n) in enumerate(zip(self.places.tolist(), self.numbers.tolist(), strict=True))
+            if np.all(shares[:, m][:, squares[n] > 0] @ squares[n][squares[n] > 0] <= 1 + 1e-9)
+        ]
+        if not kept:
+            raise RangeError(
+                "no candidate keeps to the limits of the plant; choose lower levels or other bands", "limits"
+            )
+        per_candidate = (self.numbers[kept], self.places[kept], self.energies[kept], self.information[kept])
+        return MultisinePricing(self.signals, *per_candidate)
+
     def best(
-        self, prices: FloatArray, charges: FloatArray, blocks: Sequence[Block], weights: Sequence[FloatArray]
+        self,
+        prices: FloatArray,
+        charges: FloatArray,
+        blocks: Sequence[Block],
+        weights: Sequence[FloatArray],
+        tolls: FloatArray | None = None,
     ) -> Offer:
         """tr(Z I) of all candidates; offered are those that are worth their charge, and those in use."""
         worth = np.einsum("cij,ij->c", self.information, prices)
@@ -273,7 +297,7 @@ class MultisinePricing:
         good = foremost(worth >= NEARLY * charges, worth - charges)
         return Offer(worth, in_use + [self.block(c) for c in good.tolist() if c not in known])
 
-    def transformed(self, basis: FloatArray) -> "MultisinePricing":
+    def transformed(self, basis: FloatArray, taken: float = 1.0) -> "MultisinePricing":
         """The same for the parameters basis⁻¹ θ."""
         return replace(self, information=basis.T @ self.information @ basis)
 

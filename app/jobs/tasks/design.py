@@ -12,6 +12,7 @@ from app.conversion.designs import (
     candidate_points,
     decision_document,
     energy_caps,
+    plant_limits,
     prior_information,
     promise,
     searched_model,
@@ -45,6 +46,7 @@ FIELDS = {
     "prior_information": "/usePriorInformation",
     "use_prior_information": "/usePriorInformation",
     "band": "/band",
+    "limits": "/limits",
     "samples": "/samples",
     "sample_time": "/sampleTimeSeconds",
     "targets": "/targets",
@@ -104,6 +106,7 @@ def stated_problem(
         sample_time=model.structure.sample_time or request.sample_time_seconds,
         tolerance=request.tolerance,
         box=isinstance(request.operating_points, Box),
+        plant_limits=plant_limits(request, model, points),
     )
 
 
@@ -170,6 +173,7 @@ def _binding(problem: DesignProblem, binding: Binding) -> BindingDocument:
     return BindingDocument(
         what=binding.what,
         target_index=binding.index if is_target else None,
-        operating_point=None if is_target else problem.points[binding.index].tolist(),
+        limit_index=binding.index if binding.what == "limit" else None,
+        operating_point=None if binding.point is None else problem.points[binding.point].tolist(),
         multiplier=finite_or_none(binding.multiplier),
     )

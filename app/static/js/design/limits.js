@@ -4,12 +4,14 @@ import { h } from "../dom.js";
 import { field, fields, integerInput, numberInput, numberOf, select, textInput } from "../forms.js";
 import { labelled, radPerSecond } from "../numbers.js";
 import { pluginField } from "../plugin_field.js";
+import { plantLimits } from "./plant_limits.js";
 import { usualBand } from "./target_fields.js";
 
 // {element, value()}: these fields of a request.
 export function limits(catalogue, plant, experiments) {
   const continuous = plant.structure.timeDomain !== "discrete";
   const family = pluginField("kind of spectra", catalogue.spectrumFamilies, { pointer: "/spectrumFamily", kind: "lines", values: { fir: { degree: 10 }, lines: { samples: 500 } } });
+  const others = plantLimits(catalogue);
   const name = textInput();
   const samples = integerInput(1000, { min: 1 });
   const step = numberInput(continuous ? Number((0.05 / usualBand(plant.structure)[1]).toPrecision(2)) : null, { min: 0 });
@@ -25,10 +27,10 @@ export function limits(catalogue, plant, experiments) {
     field(energy, cap, { hint: "Σu²; empty: no limit", pointer: "/energyCaps" }),
     field("relative gap", tolerance, { hint: "that is certified at most", pointer: "/tolerance" }),
     field("name", name, { pointer: "/name" }),
-    field("count as known", prior, { hint: "only what is missing is designed", pointer: "/usePriorInformation", wide: true })), family.element);
+    field("count as known", prior, { hint: "only what is missing is designed", pointer: "/usePriorInformation", wide: true })), family.element, others.element);
   const value = () => ({
     name: name.value.trim(), samples: numberOf(samples), sampleTimeSeconds: continuous ? numberOf(step) : null, spectrumFamily: family.value(),
-    band: band(numberOf(low), numberOf(high)), energyCaps: numberOf(cap) == null ? null : { default: numberOf(cap) },
+    band: band(numberOf(low), numberOf(high)), limits: others.value(), energyCaps: numberOf(cap) == null ? null : { default: numberOf(cap) },
     usePriorInformation: prior.value === "model", priorExperimentIds: prior.value === "experiments" ? measured : null, tolerance: numberOf(tolerance),
   });
   return { element, value };
