@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from app.arrays import ComplexVector
+from app.conversion.channels import NAMES
 from app.conversion.effects import effect_documents, parameters_of, quantity_of
 from app.conversion.models import outcome_document, test_documents
 from app.schemas.comparisons import NoteDocument
@@ -20,9 +21,12 @@ from app.schemas.diagnoses import (
 )
 from app.schemas.effects import PlacedEffectDocument
 from app.schemas.experiments import Experiment
+from app.schemas.quantities import QuantityName
+from identification.channels import UNSTATED, Channel, Channels
 from identification.diagnosis import evidence as refits
 from identification.diagnosis.diagnose import Diagnosis, Visibility
 from identification.diagnosis.missing import explained_response, missing_response
+from identification.diagnosis.readings import reading
 from identification.diagnosis.scores import Score
 from identification.diagnosis.variances import Variation
 
@@ -42,6 +46,8 @@ def findings(found: Diagnosis, experiments: Sequence[Experiment]) -> dict[str, A
     ranking = [_ranked(found, found.scores[i]) for i in order]
     before, remaining = test_documents((found.lack_of_fit, found.remaining))
     return {
+        "inputQuantity": _name(_channels(found).input),
+        "outputQuantity": _name(_channels(found).output),
         "verdict": VERDICTS[found.verdict],
         "reason": found.reason,
         "restBefore": found.rest_before,
@@ -61,6 +67,14 @@ def findings(found: Diagnosis, experiments: Sequence[Experiment]) -> dict[str, A
     }
 
 
+def _channels(found: Diagnosis) -> Channels:
+    return found.base.flows[0].batch.channels if found.base.flows else UNSTATED
+
+
+def _name(channel: Channel) -> QuantityName | None:
+    return None if channel.quantity is None else NAMES[channel.quantity]
+
+
 def _order(found: Diagnosis) -> list[int]:
     """Places in `scores`: refitted effects by BIC, then the others by adjusted p."""
     refitted = [next(i for i, s in enumerate(found.scores) if s is one.score) for one in found.evidence]
@@ -76,6 +90,7 @@ def _ranked(found: Diagnosis, score: Score) -> RankedEffect:
         place=effect.place,
         unit=effect.unit,
         quantity=quantity_of(effect),
+        reading=reading(effect, _channels(found)),
         announced=any(one.score is score for one in found.announced),
         parameters=parameters_of(effect),
         score=float(score.statistic),

@@ -19,7 +19,7 @@ from app.schemas.experiments import (
     TimeRecordRequest,
 )
 from app.store.arrays import ArrayStore
-from identification.channels import Channel, Channels
+from identification.channels import UNSTATED, Channels
 from identification.comparison.batch import Batch
 from identification.comparison.gather import gather
 from identification.errors import MisuseError, ShapeError
@@ -56,8 +56,9 @@ def requested_measurement(request: Request) -> Measurement:
 HOLDS: dict[InputHold, Hold] = {"zeroOrder": "zero", "firstOrder": "first", "bandLimited": "band"}
 
 
-def under(conditions: RecordConditions, data: Measurement) -> Measurement:
-    """A measurement with what was stated of its channels; raises MisuseError when it is a frequency response."""
+def under(conditions: RecordConditions, data: Measurement, channels: Channels = UNSTATED) -> Measurement:
+    """A measurement with what was stated of its channels; raises MisuseError for levels of a frequency response."""
+    data = replace(data, channels=channels)
     if not conditions.stated:
         return data
     if not isinstance(data, TimeRecord):
@@ -68,7 +69,10 @@ def under(conditions: RecordConditions, data: Measurement) -> Measurement:
         )
     return replace(
         data,
-        channels=Channels(Channel(level=conditions.input_level), Channel(level=conditions.output_level)),
+        channels=Channels(
+            replace(channels.input, level=conditions.input_level),
+            replace(channels.output, level=conditions.output_level),
+        ),
         hold=None if conditions.input_hold is None else HOLDS[conditions.input_hold],
         feedback=conditions.feedback,
     )
@@ -98,14 +102,16 @@ def require_channels(data: Measurement, channels: tuple[int, int]) -> None:
         )
 
 
-def kept_measurement(experiment: Experiment, arrays: Mapping[str, NDArray[Any]]) -> Measurement:
-    """The measurement of an experiment that was kept."""
+def kept_measurement(
+    experiment: Experiment, arrays: Mapping[str, NDArray[Any]], channels: Channels = UNSTATED
+) -> Measurement:
+    """The measurement of an experiment that was kept; `channels`: what input and output of its plant are."""
     point = tuple(experiment.held_at)
     if experiment.kind == "timeRecord":
         assert experiment.sample_time_seconds is not None, "time records have a sample time"
         period = experiment.understood.period_samples
         record = TimeRecord(arrays["input"], arrays["output"], experiment.sample_time_seconds, point, period)
-        return under(experiment, record)
+        return under(experiment, record, channels)
     return FrequencyResponse(
         arrays["frequenciesRadPerSecond"],
         arrays["response"],
@@ -113,6 +119,7 @@ def kept_measurement(experiment: Experiment, arrays: Mapping[str, NDArray[Any]])
         experiment.sample_time_seconds,
         arrays.get("variance"),
         experiment.variance_degrees_of_freedom,
+        channels=channels,
     )
 
 
@@ -126,22 +133,28 @@ def logged_values(experiment: Experiment) -> dict[str, float]:
     return quantities_by_name(experiment.logged_quantities)
 
 
-def kept_batches(given: Sequence[Mapping[str, Any]], arrays: ArrayStore, mean_value: bool) -> tuple[Batch, ...]:
+def kept_batches(
+    given: Sequence[Mapping[str, Any]], arrays: ArrayStore, mean_value: bool, channels: Channels
+) -> tuple[Batch, ...]:
     """The experiments in a payload with their logged quantities, ready to be compared with a model."""
     logged = [logged_values(Experiment.model_validate(one["document"])) for one in given]
-    return gather(kept_measurements(given, arrays), mean_value, logged)
+    return gather(kept_measurements(given, arrays, channels), mean_value, logged)
 
 
 def held_out_batches(
-    given: Sequence[Mapping[str, Any]], arrays: ArrayStore, mean_value: bool, model: Model
+    given: Sequence[Mapping[str, Any]], arrays: ArrayStore, mean_value: bool, model: Model, channels: Channels
 ) -> tuple[Batch, ...]:
     """The held-out experiments in a payload, if any; raises MisuseError when they do not match the model."""
     with field_named({}, "/heldOutExperimentIds"), within_doubles():
-        held_out = kept_batches(given, arrays, mean_value) if given else ()
+        held_out = kept_batches(given, arrays, mean_value, channels) if given else ()
         require_matching(model, held_out)
     return held_out
 
 
-def kept_measurements(given: Sequence[Mapping[str, Any]], arrays: ArrayStore) -> list[Measurement]:
+def kept_measurements(given: Sequence[Mapping[str, Any]], arrays: ArrayStore, channels: Channels) -> list[Measurement]:
     """The measurements of the experiments in a payload, {"document": …, "arrays": hash} each."""
-    return [kept_measurement(Experiment.model_validate(one["document"]), arrays.get(one["arrays"])) for one in given]
+    documents = [Experiment.model_validate(one["document"]) for one in given]
+    return [
+        kept_measurement(document, arrays.get(one["arrays"]), channels)
+        for document, one in zip(documents, given, strict=True)
+    ]

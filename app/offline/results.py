@@ -134,8 +134,10 @@ def write_diagnosis(folder: Path, found: Diagnosis) -> None:
     if found.none_of_these_weight is not None and found.announced:
         table.add_row("none of these", f"{found.none_of_these_weight:.3f}", "", "")
     _say(folder, table)
-    if found.reason:
-        Console().print(found.reason, markup=False)
+    readings = [f"{one.kind}: {one.reading}" for one in found.ranking if one.announced and one.reading]
+    for text in (*readings, found.reason):
+        if text:
+            Console().print(text, markup=False)
 
 
 def write_report(path: Path, chain: "Chain", title: str = "", introduction: str = "") -> None:

@@ -12,6 +12,7 @@ from app.schemas.effects import EffectParameter, PlacedEffectDocument
 from app.schemas.experiments import Identifier
 from app.schemas.outcomes import OutcomeDocument, TestDocument
 from app.schemas.plants import LongText, Text
+from app.schemas.quantities import QuantityName
 from identification.diagnosis.remainder import MATERIAL
 
 Kind = Annotated[str, Field(min_length=1, max_length=64)]
@@ -87,6 +88,9 @@ class RankedEffect(CamelModel):
     place: str
     unit: str
     quantity: str | None = Field(default=None, description="logged quantity, with its unit, that it depends on")
+    reading: str = Field(
+        default="", description="what the force is by what the output is, where the plant does not state its quantity"
+    )
     announced: bool = Field(description="one of those that cannot be told apart and may be what is missing")
     parameters: list[EffectParameter] = Field(description="of the variant with the best score")
     score: Double = Field(description="Rao score S; negative where the amplitude would have the wrong sign")
@@ -155,6 +159,10 @@ class Diagnosis(CamelModel):
     model_id: str
     comparison_id: str | None
     experiment_ids: list[str]
+    input_quantity: QuantityName | None = Field(default=None, description="what the input was taken for, as stated")
+    output_quantity: QuantityName | None = Field(
+        default=None, description="what the output was taken for; not stated: position, speed and acceleration"
+    )
     amplitude_degree: Integer
     mean_value: bool
     seed: Integer

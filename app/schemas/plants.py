@@ -7,6 +7,7 @@ from pydantic import Field
 from app.schemas.common import CamelModel, Double, Integer, Timestamp
 from app.schemas.families import Basis
 from app.schemas.plug_ins import named_union
+from app.schemas.quantities import QuantityName
 from identification.models.physical import Coefficient, PhysicalForm
 from identification.models.rational import RationalStructure
 
@@ -34,6 +35,11 @@ class SignalDescription(CamelModel):
 
     name: Name = Field(description="what it is, e.g. motor current")
     unit: Text = Field(default="", description="its unit")
+    quantity: QuantityName | None = Field(
+        default=None,
+        description="what it measures: comparison and diagnosis see by it how forces meet the motion; where it is not"
+        " stated a diagnosis tries position, speed and acceleration",
+    )
 
 
 class DiscreteTimeStructure(CamelModel):

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from app.container import Container
+from app.conversion.channels import channels_of, foreign
 from app.errors import UnprocessableError
 from app.jobs.records import JobRecord
 from app.schemas.comparisons import Comparison
@@ -46,7 +47,10 @@ def payload(
     """What the task gets; raises UnprocessableError when experiments, model and effects do not fit each other."""
     check_time_domain(model, experiments, pointer)
     check_logged(model, experiments, pointer)
-    check_effects(request.effects or [], experiments)
+    check_effects(request.effects or [], plant, experiments)
+    why = foreign(request.domain or "", channels_of(plant))
+    if why:
+        raise UnprocessableError.at("/domain", why)
     return {
         "plant": plant.as_json(),
         "model": model.as_json(),
@@ -56,12 +60,12 @@ def payload(
     }
 
 
-def check_effects(kinds: Sequence[str], experiments: list[Measured]) -> None:
+def check_effects(kinds: Sequence[str], plant: Plant, experiments: list[Measured]) -> None:
     """Raises UnprocessableError unless each effect is known, named once, and such that the experiments can show it."""
     if len(set(kinds)) < len(kinds):
         raise UnprocessableError.at("/effects", "the same effect is named twice")
     for i, kind in enumerate(kinds):
-        check_effect(kind, experiments, f"/effects/{i}")
+        check_effect(kind, plant, experiments, f"/effects/{i}")
 
 
 def _source(resources: ResourceRepository, request: DiagnosisRequest) -> tuple[str, list[str], str]:

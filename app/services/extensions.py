@@ -57,7 +57,7 @@ def payload(
     fitted: Set[str],
 ) -> dict[str, Any]:
     """What the task gets; raises UnprocessableError when the effect or the experiments do not fit the model."""
-    check_effect(request.effect, [*experiments, *held_out], "/effect")
+    check_effect(request.effect, plant, [*experiments, *held_out], "/effect")
     check_has_coefficients(model, request.effect, "/effect")
     check_measured(model, experiments, held_out, fitted)
     quantity = chosen_quantity(request.effect, request.quantity, [*experiments, *held_out])

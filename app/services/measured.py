@@ -3,13 +3,14 @@
 from collections.abc import Sequence
 from typing import Any
 
+from app.conversion.channels import channels_of, foreign_effect
 from app.conversion.effects import effect_of
 from app.conversion.experiments import logged_values
 from app.conversion.plants import is_state_space
 from app.errors import UnprocessableError
 from app.schemas.experiments import Experiment
 from app.schemas.models import Model
-from app.schemas.plants import DiscreteStateSpaceStructure, DiscreteTimeStructure
+from app.schemas.plants import DiscreteStateSpaceStructure, DiscreteTimeStructure, Plant
 from app.services.documents import named_of_plant
 from app.services.experiments import KIND, experiment_of, local_experiments
 from app.services.fitting import SAMPLE_TIME_TOLERANCE
@@ -100,22 +101,25 @@ def periodic(experiment: Experiment) -> bool:
     return experiment.kind == "timeRecord" and periods is not None and periods >= LEAST_PERIODS
 
 
-def check_effect(kind: str, experiments: Sequence[Measured], pointer: str) -> None:
-    """Raises UnprocessableError for an effect that is not in the library or that these experiments cannot show."""
+def check_effect(kind: str, plant: Plant, experiments: Sequence[Measured], pointer: str) -> None:
+    """Raises UnprocessableError for an effect that is not in the library or that plant or experiments cannot show."""
     effect = effect_of(kind)
     if effect is None:
         raise UnprocessableError.at(pointer, f"there is no effect {kind}; /v1/catalogue names those that there are")
+    why = foreign_effect(effect, channels_of(plant))
+    if why:
+        raise UnprocessableError.at(pointer, why)
     if kind == "second_variable" and not common_quantities(experiments):
         raise UnprocessableError.at(
             pointer,
             f"{effect.title}: there is no quantity that was logged in all of these experiments in one unit; state it"
             " among their loggedQuantities",
         )
-    if effect.needs_records and not all(periodic(experiment) for experiment, _ in experiments):
+    if effect.needs_records and not all(experiment.kind == "timeRecord" for experiment, _ in experiments):
         raise UnprocessableError.at(
             pointer,
-            f"{effect.title} shows only in records of at least {LEAST_PERIODS} periods, and some of the experiments"
-            " are frequency responses or not periodic; bring in the records, or ask for effects that act linearly",
+            f"{effect.title} shows only in time records, and some of the experiments are frequency responses; bring in"
+            " the records, or ask for effects that act linearly",
         )
 
 

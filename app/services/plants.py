@@ -3,6 +3,7 @@
 from typing import Any
 
 from app import __version__
+from app.conversion.channels import check_unit
 from app.conversion.misuse import pointing
 from app.conversion.plants import MATRIX_NAMES, is_state_space, plant_dependence, rational_of
 from app.errors import UnprocessableError
@@ -49,6 +50,13 @@ def _check_signals(request: PlantRequest) -> None:
     for name, signals in (("inputs", request.inputs), ("outputs", request.outputs)):
         if signals and len({signal.name for signal in signals}) < len(signals):
             raise UnprocessableError.at(f"/{name}", f"two {name} have the same name")
+        for i, signal in enumerate(signals or ()):
+            with pointing({"quantity": f"/{name}/{i}/quantity"}):
+                check_unit(signal)
+    for name, one in (("input", request.input), ("output", request.output)):
+        if one is not None:
+            with pointing({"quantity": f"/{name}/quantity"}):
+                check_unit(one)
 
 
 def plant_of(resource: Resource) -> Plant:

@@ -27,7 +27,7 @@ def submit(container: Container, model_id: str, request: StaircaseRequest, key: 
     experiments = measured_of_plant(resources, request.experiment_ids, plant.id, "/experimentIds")
     held_out = measured_of_plant(resources, request.held_out_experiment_ids, plant.id, HELD_OUT)
     check_measured(model, experiments, held_out, fitted_experiments(resources, model))
-    check_effects(request.effects or [], [*experiments, *held_out])
+    check_effects(request.effects or [], plant, [*experiments, *held_out])
     for i, kind in enumerate(request.effects or []):
         check_has_coefficients(model, kind, f"/effects/{i}")
     mark = fingerprint("createStaircase", model_id, request.model_dump(mode="json"))

@@ -24,12 +24,20 @@ def test_a_plant_is_described_with_a_live_picture(visit: Visit, server: Server) 
     for pointer, text in {"/name": "crane", "/input/name": "force", "/input/unit": "N", "/output/name": "way"}.items():
         page.locator(f'[data-pointer="{pointer}"]').fill(text)
     page.locator('[data-pointer="/schedulingVariables/0/name"]').fill("length")
+    page.get_by_label("output: quantity").select_option("angular velocity")
+    page.locator('[data-pointer="/output/unit"]').fill("m/s")
+    page.get_by_role("button", name="Keep this plant").click()
+    page.get_by_text("m/s is no unit of angular velocity").first.wait_for()
+    visit.expect_refusal(422)
+    page.get_by_label("output: quantity").select_option("velocity")
     page.get_by_role("button", name="Give one coefficient a basis of its own").click()
     page.get_by_label("coefficient", exact=True).select_option("b0")
     page.get_by_role("button", name="Keep this plant").click()
     page.get_by_role("heading", name="crane").wait_for()
     visit.wait()
+    page.get_by_text("way (m/s): velocity").wait_for()
     plant = Api(server.url).get(f"/plants/{page.url.rsplit('/', 1)[1]}")
+    assert plant["output"]["quantity"] == "velocity"
     assert plant["parameterNames"] == ["a1[0]", "a1[1]", "a1[2]", "a2[0]", "a2[1]", "a2[2]", "b0[0]"]
     assert visit.violations() == []
 

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app import __version__
+from app.conversion.channels import channels_of
 from app.conversion.comparisons import compared_experiments, map_arrays, part_document
 from app.conversion.effects import extended_model
 from app.conversion.experiments import kept_batches
@@ -80,8 +81,9 @@ def _along(payload: dict[str, Any], place: int, experiment: Experiment, context:
 def _compared(
     payload: dict[str, Any], data: Data, places: list[int], context: TaskContext
 ) -> tuple[Comparison, tuple[Batch, ...]]:
-    model = extended_model(Model.model_validate(payload["model"]), Plant.model_validate(payload["plant"]))
+    plant = Plant.model_validate(payload["plant"])
+    model = extended_model(Model.model_validate(payload["model"]), plant)
     with field_named(FIELDS, "/experimentIds"), within_doubles():
         given = [payload["experiments"][i] for i in places]
-        batches = kept_batches(given, context.arrays, payload["request"]["meanValue"])
+        batches = kept_batches(given, context.arrays, payload["request"]["meanValue"], channels_of(plant))
         return compare(model, batches, fitted=data == "fitted"), batches

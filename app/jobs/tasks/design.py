@@ -8,6 +8,7 @@ from pydantic.alias_generators import to_camel
 
 from app import __version__
 from app.arrays import finite_or_none, finite_parts
+from app.conversion.channels import channels_of
 from app.conversion.designs import (
     candidate_points,
     decision_document,
@@ -70,7 +71,7 @@ def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
         model = replace(model, noise_variance=request.noise_variance)
     given = payload["experiments"]
     with field_named({}, "/priorExperimentIds"), within_doubles():
-        experiments = kept_batches(given, context.arrays, True) if given else ()
+        experiments = kept_batches(given, context.arrays, True, channels_of(plant)) if given else ()
         require_matching(model, experiments)
     with field_named(FIELDS, "/operatingPoints"), within_doubles():
         problem = stated_problem(request, model, document.covariance is not None, experiments)

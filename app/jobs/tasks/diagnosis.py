@@ -3,6 +3,7 @@
 from typing import Any
 
 from app import __version__
+from app.conversion.channels import channels_of
 from app.conversion.deciding import deciding_design
 from app.conversion.diagnoses import findings
 from app.conversion.effects import chosen_effects, extended_model
@@ -25,10 +26,11 @@ def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
     """Fit, score tests of all effects, refit of the short list."""
     request = DiagnosisRequest.model_validate(payload["request"])
     experiments = [Experiment.model_validate(given["document"]) for given in payload["experiments"]]
-    model = extended_model(Model.model_validate(payload["model"]), Plant.model_validate(payload["plant"]))
+    plant = Plant.model_validate(payload["plant"])
+    model, channels = extended_model(Model.model_validate(payload["model"]), plant), channels_of(plant)
     with field_named(FIELDS, payload["pointer"]), within_doubles():
         context.progress(0.1, "the spectra of the experiments")
-        batches = kept_batches(payload["experiments"], context.arrays, request.mean_value)
+        batches = kept_batches(payload["experiments"], context.arrays, request.mean_value, channels)
         context.progress(0.3, "what each effect would change")
         effects = chosen_effects(request.effects, request.domain)
         found = diagnose(model, batches, effects, request.amplitude_degree, request.seed, request.material)

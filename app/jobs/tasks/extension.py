@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from app.conversion.channels import channels_of
 from app.conversion.effects import effect_of, extended_model
 from app.conversion.experiments import held_out_batches, kept_batches
 from app.conversion.extremes import require_finite, within_doubles
@@ -35,10 +36,11 @@ def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
     """The parent fitted to the experiments, the effect added, the errors of both."""
     request = ExtensionRequest.model_validate(payload["request"])
     parent = Model.model_validate(payload["model"])
-    model = extended_model(parent, Plant.model_validate(payload["plant"]))
-    held_out = held_out_batches(payload["heldOut"], context.arrays, request.mean_value, model)
+    plant = Plant.model_validate(payload["plant"])
+    model, channels = extended_model(parent, plant), channels_of(plant)
+    held_out = held_out_batches(payload["heldOut"], context.arrays, request.mean_value, model, channels)
     with field_named(FIELDS, "/experimentIds"), within_doubles():
-        batches = kept_batches(payload["experiments"], context.arrays, request.mean_value)
+        batches = kept_batches(payload["experiments"], context.arrays, request.mean_value, channels)
         context.progress(0.2, "the model without the effect")
         base = fit(model, rows_of(model, batches))
         context.progress(0.4, "the model with the effect")

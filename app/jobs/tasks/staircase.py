@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from app import __version__
+from app.conversion.channels import channels_of
 from app.conversion.diagnoses import VERDICTS, findings
 from app.conversion.effects import chosen_effects, extended_model
 from app.conversion.experiments import held_out_batches, kept_batches
@@ -31,10 +32,11 @@ def run(payload: dict[str, Any], context: TaskContext) -> TaskResult:
     """Every step with its version and its diagnosis."""
     request = StaircaseRequest.model_validate(payload["request"])
     first = Model.model_validate(payload["model"])
-    model = extended_model(first, Plant.model_validate(payload["plant"]))
-    held_out = held_out_batches(payload["heldOut"], context.arrays, request.mean_value, model)
+    plant = Plant.model_validate(payload["plant"])
+    model, channels = extended_model(first, plant), channels_of(plant)
+    held_out = held_out_batches(payload["heldOut"], context.arrays, request.mean_value, model, channels)
     with field_named(FIELDS, "/experimentIds"), within_doubles():
-        batches = kept_batches(payload["experiments"], context.arrays, request.mean_value)
+        batches = kept_batches(payload["experiments"], context.arrays, request.mean_value, channels)
         context.progress(0.2, "effects one after the other")
         steps = staircase(
             model,

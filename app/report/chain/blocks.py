@@ -44,7 +44,8 @@ def diagnosis_text(diagnosis: Diagnosis) -> str:
     held = diagnosis.ranking[0].evidence is not None and diagnosis.ranking[0].evidence.at_bound
     names += " (at the end of its physical range)" if held else ""
     share = percent(diagnosis.explained_share)
-    return f"Announced: {names}. {VERDICTS[diagnosis.verdict]} The best effect explains {share} of it.{reason}"
+    reading = next((f" That is: {one.reading}." for one in diagnosis.ranking if one.announced and one.reading), "")
+    return f"Announced: {names}.{reading} {VERDICTS[diagnosis.verdict]} The best effect explains {share} of it.{reason}"
 
 
 def diagnosis_blocks(diagnosis: Diagnosis, labels: Mapping[str, str], axes: Axes) -> list[Plot | Table]:

@@ -13,7 +13,7 @@ import { page } from "../js/ready.js";
 import { table } from "../js/tables.js";
 
 const at = (rest) => `/plants/${context.plantId}/${rest}`;
-const DOMAINS = [["", "the whole library"], ["general", "effects of any plant"], ["mechanical", "those and mechanical ones"], ["impedance", "those and ones of impedances"]];
+const DOMAINS = [["", "the whole library"], ["general", "effects of any plant"], ["mechanical", "those and mechanical ones"], ["electrical", "those and electrical ones"], ["impedance", "those and ones of impedances"]];
 
 page(async () => {
   const query = { plantId: context.plantId };

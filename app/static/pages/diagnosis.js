@@ -14,6 +14,7 @@ import { ratio } from "../js/compare/lack_of_fit.js";
 import { indexed, titleOf } from "../js/models/versions.js";
 import { counted, moment, percent, significant } from "../js/numbers.js";
 import { loadPlotly } from "../js/plots.js";
+import { quantityText } from "../js/quantities.js";
 import { page } from "../js/ready.js";
 import { plant } from "../js/shell.js";
 
@@ -38,6 +39,7 @@ function drawVerdict(diagnosis, model) {
   const { kind, text } = VERDICTS[diagnosis.verdict];
   replace(byId("verdict"),
     h("p", {}, "Model: ", h("a", { href: at(`models/${model.id}`) }, titleOf(model)), `. Judged by ${counted(diagnosis.experimentIds.length, "experiment")}, ${moment(diagnosis.createdAt)}. `,
+      `Input: ${quantityText(diagnosis.inputQuantity)}; output: ${quantityText(diagnosis.outputQuantity)}. `,
       diagnosis.comparisonId ? h("a", { href: at(`compare/${diagnosis.comparisonId}`) }, "The comparison") : null),
     message(kind, h("p", {}, h("strong", {}, text)), ...reasons(diagnosis)),
     facts([significant(ratio(diagnosis.lackOfFit)), "χ² per degree of freedom now"], diagnosis.announced.length ? [significant(ratio(diagnosis.remaining)), "with the best effect"] : null,

@@ -4,6 +4,7 @@ import { list } from "../js/api.js";
 import { context } from "../js/context.js";
 import { byId, facts, h, message, replace } from "../js/dom.js";
 import { counted, exact, labelled, moment } from "../js/numbers.js";
+import { quantityText } from "../js/quantities.js";
 import { page } from "../js/ready.js";
 import { plant } from "../js/shell.js";
 import { structureText } from "../js/structure_fields.js";
@@ -30,7 +31,7 @@ page(async () => {
 });
 
 function about(found) {
-  const unit = (signal) => labelled(signal.name, signal.unit);
+  const unit = (signal) => [labelled(signal.name, signal.unit), signal.quantity ? quantityText(signal.quantity) : null].filter(Boolean).join(": ");
   const signals = (one, several) => (one ? unit(one) : several.map(unit).join(", "));
   return [
     found.description ? h("p", {}, found.description) : null,

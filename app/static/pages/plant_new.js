@@ -7,6 +7,7 @@ import { byId, h, replace } from "../js/dom.js";
 import { field, fields, group, select, submitButton, textInput } from "../js/forms.js";
 import { showProblem } from "../js/problems.js";
 import { page } from "../js/ready.js";
+import { quantitySelect } from "../js/quantities.js";
 import { schedulingRows } from "../js/scheduling_rows.js";
 import { structureFields } from "../js/structure_fields.js";
 
@@ -23,7 +24,7 @@ class PlantForm {
     this.exceptions = [];
     this.name = textInput("", { required: true });
     this.description = textInput();
-    this.signals = Object.fromEntries(["input", "output"].map((which) => [which, { name: textInput(), unit: textInput() }]));
+    this.signals = Object.fromEntries(["input", "output"].map((which) => [which, { name: textInput(), unit: textInput(), quantity: quantitySelect() }]));
     const changed = () => this.changed();
     this.variables = schedulingRows(changed);
     this.structure = structureFields(changed);
@@ -44,7 +45,7 @@ class PlantForm {
   }
 
   value() {
-    const signal = ({ name, unit }) => ({ name: name.value.trim(), unit: unit.value.trim() });
+    const signal = ({ name, unit, quantity }) => ({ name: name.value.trim(), unit: unit.value.trim(), ...(quantity.value ? { quantity: quantity.value } : {}) });
     return {
       name: this.name.value.trim(), description: this.description.value.trim(),
       input: signal(this.signals.input), output: signal(this.signals.output),
@@ -57,6 +58,7 @@ class PlantForm {
     const signalFields = (which, example) => [
       field(`${which}: name`, this.signals[which].name, { hint: example, pointer: `/${which}/name` }),
       field(`${which}: unit`, this.signals[which].unit, { pointer: `/${which}/unit` }),
+      field(`${which}: quantity`, this.signals[which].quantity, { hint: "tells a spring from a damper in a diagnosis", pointer: `/${which}/quantity` }),
     ];
     const another = h("button", { type: "button", class: "quiet", onclick: () => this.#addException() }, "Give one coefficient a basis of its own");
     return h("form", { novalidate: true, onsubmit: (event) => event.preventDefault() },

@@ -22,7 +22,7 @@ function entry(one, { plant, add }) {
   const held = evidence.atBound ? h("p", { class: "hint" }, "At the end of its physical range: no estimate, and no interval.") : null;
   const stopped = evidence.outcome.status === "converged" ? null : h("p", { class: "hint" }, evidence.outcome.advice || evidence.outcome.status.replaceAll("_", " "));
   return h("li", {},
-    h("div", {}, h("h3", {}, nameOf(one), one.announced ? h("span", { class: "tag" }, "announced") : null), h("p", { class: "hint" }, `acts on: ${one.place}`)),
+    h("div", {}, h("h3", {}, nameOf(one), one.announced ? h("span", { class: "tag" }, "announced") : null), h("p", { class: "hint" }, `acts on: ${one.place}`), one.reading ? h("p", { class: "hint" }, `${one.reading}.`) : null),
     h("div", {}, h("p", {}, effectText(evidence.effect, plant)), held, stopped),
     h("div", {}, weightBar(evidence.weight), h("p", { class: "hint" }, `χ² explained per parameter: ${significant(evidence.chiSquarePerParameter)}; adjusted p-value: ${probability(one.adjustedPValue)}`)),
     button);
