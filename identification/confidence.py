@@ -11,7 +11,7 @@ QUANTILE_95 = 1.959963984540054
 
 @dataclass(frozen=True, eq=False)
 class GainAndPhase:
-    """|G| and arg G (unwrapped, rad) with their standard deviations, all (F,)."""
+    """|G| and arg G (rad) with their standard deviations, all (F,)."""
 
     gain: FloatArray
     phase: FloatArray
@@ -29,12 +29,14 @@ class GainAndPhase:
         return self.phase - half, self.phase + half
 
 
-def gain_and_phase(response: ComplexArray, covariance: FloatArray) -> GainAndPhase:
+def gain_and_phase(response: ComplexArray, covariance: FloatArray, phase: FloatArray | None = None) -> GainAndPhase:
     """Gain and phase of G (F,) whose (Re, Im) have the covariance C (F, 2, 2), to first order in C.
 
         var|G| = rᵀ C r,   var(arg G) = tᵀ C t / |G|²,   r = (Re G, Im G)/|G|,   t = (−Im G, Re G)/|G|
 
-    Where G is zero its phase is not known at all (infinite deviation), and r is any direction.
+    `phase` (F,) is arg G as it runs between these frequencies; without it what is nearest from one to the next, which
+    is wrong where the phase turns by more than π between them. Where G is zero its phase is not known at all (infinite
+    deviation), and r is any direction.
     """
     gain = np.abs(response)
     unit = np.where(gain > 0, response / np.where(gain > 0, gain, 1.0), 1.0)
@@ -44,7 +46,8 @@ def gain_and_phase(response: ComplexArray, covariance: FloatArray) -> GainAndPha
     across_variance = np.einsum("fi,fij,fj->f", across, covariance, across)
     with np.errstate(divide="ignore", invalid="ignore"):
         phase_deviation = np.where(gain > 0, np.sqrt(np.maximum(across_variance, 0.0)) / gain, np.inf)
-    return GainAndPhase(gain, np.unwrap(np.angle(response)), np.sqrt(np.maximum(gain_variance, 0.0)), phase_deviation)
+    angle = np.unwrap(np.angle(response)) if phase is None else phase
+    return GainAndPhase(gain, angle, np.sqrt(np.maximum(gain_variance, 0.0)), phase_deviation)
 
 
 def covariance_root(covariance: FloatArray) -> FloatArray:

@@ -165,7 +165,7 @@ class ModelFrequencyResponse(CamelModel):
     magnitude: Vector
     magnitude_lower95: Vector | None = Field(description="null when the covariance is not known")
     magnitude_upper95: Vector | None
-    phase_rad: Vector = Field(description="unwrapped")
+    phase_rad: Vector = Field(description="continuous in frequency, whatever the grid; delays counted in full")
     phase_lower95_rad: Vector | None
     phase_upper95_rad: Vector | None
     real_variance: Vector | None

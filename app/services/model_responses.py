@@ -20,18 +20,20 @@ from app.store.resources import ResourceRepository
 from identification.arrays import ComplexArray, FloatArray
 from identification.confidence import GainAndPhase, gain_and_phase
 from identification.errors import RangeError
-from identification.extension.response import LinearResponse, linear_response
+from identification.extension.response import LinearResponse, linear_response, response_phase
+from identification.models.phase import continuous_phase
 
 BANDS = ("magnitude_lower95", "magnitude_upper95", "phase_lower95_rad", "phase_upper95_rad")
 
 
 @dataclass(frozen=True)
 class _Evaluated:
-    """How a model answers at its operating point: G (F,), and the covariance (F, 2, 2) of its parts where known."""
+    """How a model answers at its operating point: G (F,), the covariance (F, 2, 2) of its parts where known, arg G."""
 
     sample_time: float | None
     response: Callable[[FloatArray], ComplexArray]
     covariance: Callable[[FloatArray], FloatArray] | None
+    phase: Callable[[FloatArray], FloatArray]
     left_out: tuple[str, ...] = ()
 
 
@@ -54,6 +56,7 @@ def frequency_response(
         covariance = np.zeros((count, 2, 2)) if model.covariance is None else model.covariance(omega)
         if not (np.isfinite(response).all() and np.isfinite(covariance).all()):
             raise RangeError("the response is infinite in this band, e.g. at a pole; leave that frequency out")
+        phase = model.phase(omega)
     known = model.covariance is not None
     return ModelFrequencyResponse(
         model_id=model_id,
@@ -62,7 +65,7 @@ def frequency_response(
         input_number=channel[1],
         frequencies_rad_per_second=omega.tolist(),
         response=ComplexVector.of(response),
-        **_gain_and_phase(gain_and_phase(response, covariance), known),
+        **_gain_and_phase(gain_and_phase(response, covariance, phase), known),
         **_covariance(covariance, known),
         left_out_effects=list(model.left_out),
     )
@@ -91,6 +94,7 @@ def _extended(document: Model, plant: Plant, point: list[float]) -> _Evaluated:
         model.structure.sample_time,
         lambda omega: found(omega).response[0],
         covariance if known else None,
+        lambda omega: response_phase(model, point, omega),
         left_out,
     )
 
@@ -100,11 +104,24 @@ def _plain(document: Model, plant: Plant, point: list[float], channel: tuple[int
     model = kept_model(document, plant) if document.state_space is None else kept_state_space(document, plant)
     if model is None:
         local = kept_local(document, point)
-        return _Evaluated(local.sample_time, lambda omega: local.frequency_response(omega)[:, y, u], None)
+        memory = local.order * (local.sample_time or 0.0)
+
+        def of_local(omega: FloatArray) -> ComplexArray:
+            return local.frequency_response(omega)[:, y, u]
+
+        return _Evaluated(
+            local.sample_time, of_local, None, lambda omega: continuous_phase(of_local, omega, memory=memory)
+        )
+
+    def response(omega: FloatArray) -> ComplexArray:
+        return model.frequency_response([point], omega)[0, :, y, u]
+
+    late = float(model.structure.dead_time(model.coefficients([point]))[0])
     return _Evaluated(
         model.structure.sample_time,
-        lambda omega: model.frequency_response([point], omega)[0, :, y, u],
+        response,
         None if document.covariance is None else lambda omega: model.response_covariance([point], omega)[0, :, y, u],
+        lambda omega: continuous_phase(response, omega, late, model.structure.memory),
     )
 
 

@@ -1,5 +1,6 @@
 """The frequency response of a model with effects, as far as it has one."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -9,6 +10,7 @@ from identification.arrays import ComplexArray, FloatArray
 from identification.comparison.batch import EXCITED, Batch
 from identification.extension.rows import Rows, effect_tangents, plant_tangents
 from identification.models.model import Model
+from identification.models.phase import continuous_phase
 from identification.places.core import Reshaped
 from identification.places.linear import Coefficient, Factor, Parallel
 from identification.places.place import Effect
@@ -43,6 +45,22 @@ def linear_response(model: Model, points: ArrayLike, omega: FloatArray) -> Linea
         known = kept.joint_covariance
         covariance = None if known is None else _covariance(kept, known, batch)
     return LinearResponse(flow.output, covariance, left_out)
+
+
+def response_phase(model: Model, point: Sequence[float] | FloatArray, omega: FloatArray) -> FloatArray:
+    """arg G(p, ω) (F,) in rad of that response at one point (s,), its delays in full; see `continuous_phase`."""
+    batch = _unit_input(model.dependence.points(np.array([point], dtype=np.float64)), np.ones(1))
+    kept = with_only(model, [_acts_linearly(one.effect) for one in model.effects])
+    setting = kept.setting(batch.points)
+    late = model.structure.dead_time(setting.zeta)[0] + sum(
+        one.effect.dead_time(one.amplitude(setting, batch))[0] for one in kept.effects
+    )
+
+    def response(w: FloatArray) -> ComplexArray:
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.asarray(kept.respond(_unit_input(batch.points, w)).output[0])
+
+    return continuous_phase(response, omega, float(late), model.structure.memory)
 
 
 def coefficients(model: Model, points: ArrayLike) -> FloatArray:

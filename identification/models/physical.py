@@ -84,6 +84,10 @@ class PhysicalForm(Structure):
         """n_a."""
         return self.n_a
 
+    def dead_time(self, zeta: FloatArray) -> FloatArray:
+        """τ."""
+        return np.asarray(zeta[..., -1]) if self.delay else np.zeros(zeta.shape[:-1])
+
     @cached_property
     def plain(self) -> RationalStructure:
         """The same model with a leading one."""

@@ -76,6 +76,11 @@ class RationalStructure(Structure):
         a, b, tau, c, d = np.split(zeta, ends, axis=-1)
         return a, b, tau, c, d
 
+    def dead_time(self, zeta: FloatArray) -> FloatArray:
+        """n_k T + τ."""
+        late = self.n_k * (self.sample_time or 0.0)
+        return np.asarray(late + self.split(zeta)[2].sum(axis=-1))
+
     @property
     def plain(self) -> "RationalStructure":
         """Itself: the leading coefficient of A is one."""

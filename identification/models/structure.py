@@ -79,6 +79,15 @@ class Structure(ABC):
         entries = tuple(len(group.entries) for group in self.groups)
         return ParameterDependence(variables, tuple(one for one in bases if one is not None), entries)
 
+    def dead_time(self, zeta: FloatArray) -> FloatArray:
+        """The seconds (…,) of ζ (…, n) by which everything passes later, beside what poles and zeros do."""
+        return np.zeros(zeta.shape[:-1])
+
+    @property
+    def memory(self) -> float:
+        """n_x T in seconds, by which poles at zero may delay; 0 in continuous time."""
+        return self.order * (self.sample_time or 0.0)
+
     @property
     def transients(self) -> int:
         """How many coefficients what was before a record and what follows it take at its lines, over A(q)."""

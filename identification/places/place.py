@@ -230,6 +230,10 @@ class Effect(ABC):
         """How the amplitude is spread over the measurements of a batch, (M,): one everywhere unless overridden."""
         return np.ones(len(batch.points))
 
+    def dead_time(self, e: FloatArray) -> FloatArray:
+        """The seconds (M,) by which all passes later at the amplitude e (shapes, M)."""
+        return np.zeros(e.shape[-1])
+
     def judgeable(self, flow: Flow) -> bool:
         """Whether the data of this batch can show the effect at all."""
         return not self.needs_records or flow.batch.signals is not None

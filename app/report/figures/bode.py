@@ -1,6 +1,7 @@
 """Frequency responses with what is known of them."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 import plotly.graph_objects as go
@@ -11,6 +12,7 @@ from app.report.numbers import estimate, significant
 from app.report.style import NEUTRAL, add_band, add_truth, colour, dash, new_figure
 from identification.arrays import FloatArray
 from identification.confidence import QUANTILE_95, GainAndPhase, gain_and_phase
+from identification.extension.response import response_phase
 from identification.models.model import Model
 from identification.signals import FrequencyResponse, OperatingPoint
 
@@ -115,7 +117,7 @@ def _known(model: Model, point: OperatingPoint, omega: FloatArray) -> GainAndPha
         model.frequency_response([point], omega)[0, :, 0, 0],
         model.response_covariance([point], omega)[0, :, 0, 0],
     )
-    return gain_and_phase(response, covariance)
+    return gain_and_phase(response, covariance, response_phase(replace(model, effects=()), point, omega))
 
 
 def _half_widths(model: Model, point: OperatingPoint, omega: FloatArray) -> FloatArray:

@@ -12,7 +12,7 @@ from app.report.style import NEUTRAL, add_band, colour, dash, new_figure
 from identification.arrays import BoolArray, ComplexArray, FloatArray
 from identification.comparison.batch import EXCITED, Batch
 from identification.confidence import gain_and_phase
-from identification.extension.response import linear_response
+from identification.extension.response import linear_response, response_phase
 from identification.models.model import Model
 
 Version = tuple[str, Model]
@@ -29,7 +29,7 @@ def side_by_side(versions: Sequence[Version], batch: Batch, label: str, axes: Ax
     measured = batch.outputs[0, used] / input_lines
     figure = new_figure(("gain", "phase", "error"), heights=(0.42, 0.26, 0.32), height=680)
     marker = {"size": 5, "color": NEUTRAL, "opacity": 0.8}
-    phase = np.unwrap(np.angle(measured))
+    phase = _phase(versions[0][1], batch, omega, measured)
     for row, y in enumerate((abs(measured), np.rad2deg(phase)), start=1):
         common = {"mode": "markers", "name": "measured", "legendgroup": "measured", "showlegend": row == 1}
         figure.add_scatter(x=hertz(omega), y=y, marker=marker, row=row, col=1, **common)
@@ -38,7 +38,7 @@ def side_by_side(versions: Sequence[Version], batch: Batch, label: str, axes: Ax
     figure.add_scatter(x=hertz(omega), y=noise, mode="lines", line=line, name="noise (σ)", opacity=0.6, row=3, col=1)
     said = [_said(model, batch, used) for _, model in versions]
     for i, ((name, model), response) in enumerate(zip(versions, said, strict=True)):
-        _add_version(figure, name, i, omega, response, measured)
+        _add_version(figure, name, i, omega, response, measured, phase)
         _add_bands(figure, model, batch, omega, response, name, i)
     figure.update_xaxes(type="log", dtick=1)
     figure.update_xaxes(title=FREQUENCY, row=3, col=1)
@@ -58,10 +58,22 @@ def _said(model: Model, batch: Batch, used: BoolArray) -> ComplexArray:
     return np.asarray(model.output(batch)[0, used] / batch.inputs[0, used])
 
 
+def _phase(model: Model, batch: Batch, omega: FloatArray, measured: ComplexArray) -> FloatArray:
+    """arg of what was measured, on the turn of what a model says."""
+    said = linear_response(model, batch.points[:1], omega).response[0]
+    return np.asarray(response_phase(model, batch.points[0], omega) + np.angle(measured / said))
+
+
 def _add_version(
-    figure: go.Figure, name: str, i: int, omega: FloatArray, response: ComplexArray, measured: ComplexArray
+    figure: go.Figure,
+    name: str,
+    i: int,
+    omega: FloatArray,
+    response: ComplexArray,
+    measured: ComplexArray,
+    measured_phase: FloatArray,
 ) -> None:
-    phase = np.unwrap(np.angle(measured)) + np.angle(response / measured)
+    phase = measured_phase + np.angle(response / measured)
     line = {"color": colour(i), "dash": dash(i), "width": 2}
     common = {"mode": "lines", "line": line, "name": name, "legendgroup": name, "x": hertz(omega), "col": 1}
     figure.add_scatter(y=abs(response), row=1, **common)

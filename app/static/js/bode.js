@@ -63,7 +63,9 @@ function near(phase, model, frequency) {
   const { frequenciesRadPerSecond: omega, phaseRad } = model;
   let i = omega.findIndex((one) => one >= frequency);
   if (i < 0) i = omega.length - 1;
-  return phase + 2 * Math.PI * Math.round((phaseRad[i] - phase) / (2 * Math.PI));
+  const share = i > 0 && omega[i] > omega[i - 1] ? (frequency - omega[i - 1]) / (omega[i] - omega[i - 1]) : 1;
+  const said = phaseRad[Math.max(i - 1, 0)] * (1 - share) + phaseRad[i] * share;
+  return phase + 2 * Math.PI * Math.round((said - phase) / (2 * Math.PI));
 }
 
 function curveTraces(curve, i) {
