@@ -16,7 +16,7 @@ SIGNATURES = {"PNG": b"\x89PNG", "CSV": "\ufefffrequency (Hz),gain".encode(), "S
 def report() -> Report:
     figure = new_figure()
     figure.add_scatter(x=[1.0, 10.0], y=[2.0, 3.0], mode="lines+markers")
-    table = Table(("frequency (Hz)", "gain"), (("1", "2"), ('10, "about"', "3")))
+    table = Table(("frequency (Hz)", "gain"), (("1", "2"), ('10, "about"', "−3.0·10⁻¹²")))
     return Report(
         "A report", "Of a plant.", (Fact("1", "one"),), (Section("Found", (), (Plot(figure, "Gain.", table),)),)
     )
@@ -37,7 +37,7 @@ def test_figures_are_saved_and_tables_are_printed(browser: "Browser", tmp_path: 
             assert saving.value.suggested_filename == f"gain.{kind.lower()}"
             content = saving.value.path().read_bytes()
             assert content.startswith(beginning)
-            assert kind != "CSV" or b'"10, ""about""",3' in content
+            assert kind != "CSV" or b'"10, ""about""",-3.0e-12' in content
         page.evaluate("dispatchEvent(new Event('beforeprint'))")
         assert page.locator("details[open]").count() == 1
         page.emulate_media(media="print")

@@ -9,9 +9,17 @@ function save(blob, name) {
   setTimeout(() => URL.revokeObjectURL(link.href), 10000);
 }
 
+// A cell as a spreadsheet reads it: 1.2·10⁻³ becomes 1.2e-3.
+function plain(text) {
+  const number = text.replaceAll("−", "-");
+  const [, mantissa, power] = /^([-\d.]+)·10([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)$/.exec(number) ?? [];
+  if (mantissa) return `${mantissa}e${[...power].map((sign) => "⁰¹²³⁴⁵⁶⁷⁸⁹".indexOf(sign)).join("").replace("-1", "-")}`;
+  return /^-[\d.]+$/.test(number) ? number : text;
+}
+
 function csv(table) {
-  const quoted = (cell) => (/[",\n]/.test(cell.textContent) ? `"${cell.textContent.replaceAll('"', '""')}"` : cell.textContent);
-  return "\ufeff" + [...table.rows].map((row) => [...row.cells].map(quoted).join(",")).join("\r\n") + "\r\n";
+  const quoted = (text) => (/[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
+  return "\ufeff" + [...table.rows].map((row) => [...row.cells].map((cell) => quoted(plain(cell.textContent))).join(",")).join("\r\n") + "\r\n";
 }
 
 function picture(svg) {

@@ -4,6 +4,7 @@ import { h, newId } from "./dom.js";
 import { Cells } from "./map_cells.js";
 import { drawLegend, drawMap, layoutOf, paintCells } from "./map_drawing.js";
 import { significant } from "./numbers.js";
+import { canvasButton } from "./saving.js";
 import { tableBehind } from "./tables.js";
 import { onThemeChange } from "./theme.js";
 
@@ -43,7 +44,7 @@ export class FieldMap {
     const { minimum, maximum } = this.colours;
     place.append(h("figure", {},
       h("div", { class: "map-legend" }, h("span", {}, valueTitle), h("span", {}, significant(minimum)), this.legend, h("span", {}, significant(maximum))),
-      h("div", { class: "map" }, this.canvas), this.reading, h("figcaption", {}, caption), table && tableBehind(table)));
+      h("div", { class: "map" }, this.canvas), this.reading, h("figcaption", {}, caption), canvasButton(this.canvas, caption), table && tableBehind(table)));
   }
 
   #listen() {

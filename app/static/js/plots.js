@@ -4,6 +4,7 @@ import { context } from "./context.js";
 import { h } from "./dom.js";
 import { begin, whenNear } from "./near_window.js";
 import { seriesColour } from "./palette.js";
+import { plotButtons } from "./saving.js";
 import { tableBehind } from "./tables.js";
 import { colour, onThemeChange } from "./theme.js";
 
@@ -17,7 +18,8 @@ let loading = null;
 // element that plotly.js draws into.
 export function plot(place, { draw, caption, table = null, height = 340, label = caption }) {
   const chart = h("div", { class: "plot", role: "img", "aria-label": label, style: `height:${height}px` });
-  place.append(h("figure", {}, chart, h("figcaption", {}, caption), table && tableBehind(table)));
+  const saving = plotButtons(chart, { draw, caption, ready: () => begin(chart) });
+  place.append(h("figure", {}, chart, h("figcaption", {}, caption), saving, table && tableBehind(table)));
   const render = () => {
     const { data, layout } = draw();
     return globalThis.Plotly.react(chart, data, styled(layout, height, data), SETTINGS);

@@ -1,6 +1,7 @@
 // Tables of text and numbers, and the one behind every plot.
 
 import { h, newId } from "./dom.js";
+import { tableButton } from "./saving.js";
 
 const MOST_ROWS = 500;
 
@@ -13,7 +14,7 @@ export function table({ columns, rows, caption = "", textColumns = 1 }) {
   const more = rows.length > MOST_ROWS ? h("p", { class: "hint" }, `The first ${MOST_ROWS} of ${rows.length} rows.`) : null;
   return h("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": caption || `Table: ${columns.join(", ")}` },
     h("table", {}, caption ? h("caption", {}, caption) : null,
-      h("thead", {}, h("tr", {}, heads)), h("tbody", {}, rows.slice(0, MOST_ROWS).map(line))), more);
+      h("thead", {}, h("tr", {}, heads)), h("tbody", {}, rows.slice(0, MOST_ROWS).map(line))), more, rows.length ? tableButton({ columns, rows, caption }) : null);
 }
 
 // A table that is made when it is opened; `make` gives what `table` takes.

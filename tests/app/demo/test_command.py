@@ -20,6 +20,7 @@ def test_the_command_says_where_the_report_is_and_repeats_itself(told: Told, tmp
     assert result.exit_code == 0, result.output
     path = tmp_path / "out" / "report.html"
     assert str(path) in [line.strip() for line in result.output.splitlines()]
+    assert path.stat().st_size < 1.5e6
     assert path.read_text(encoding="utf-8") == render(demo_report(told.story))
 
 
