@@ -8,6 +8,7 @@ import numpy as np
 from identification.arrays import ComplexArray, FloatArray, IntArray, finite_complex, finite_floats, require_positive
 from identification.channels import UNSTATED, Channels
 from identification.errors import MisuseError, RangeError, ShapeError
+from identification.measurements.input_errors import InputErrors
 
 Hold = Literal["zero", "first", "band"]
 OperatingPoint = tuple[float, ...]
@@ -135,7 +136,8 @@ class FrequencyResponse:
     estimate, None when it is known exactly. With several inputs or outputs `covariance` (F, n_y n_u, n_y n_u) may say
     how the entries are correlated, E vec(n_k) vec(n_k)ᴴ, entries row by row; `variance` is then its diagonal. `held`:
     how the input ran between its samples where the response is from samples to samples and is to be that of a model in
-    continuous time; None where it was band limited or sine by sine.
+    continuous time; None where it was band limited or sine by sine. `input_errors`: the spectra behind it where the
+    input was measured with noise, or moved with that of the output, see `under`.
     Raises ShapeError for sizes that do not fit, RangeError for values that are not finite, repeated or negative
     frequencies, frequencies above the Nyquist frequency, and covariances that are not Hermitian and positive definite.
     """
@@ -149,6 +151,7 @@ class FrequencyResponse:
     covariance: ComplexArray | None = None
     channels: Channels = UNSTATED
     held: HeldInput | None = None
+    input_errors: InputErrors | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "frequencies", finite_floats(self.frequencies, "frequencies"))
@@ -186,7 +189,16 @@ class FrequencyResponse:
     def channel(self, output: int, input: int) -> "FrequencyResponse":
         """The response of one output to one input, with its variance, as a measurement of its own."""
         variance = None if self.variance is None else self.variance.reshape(self.matrices.shape)[:, output, input]
-        return replace(self, response=self.matrices[:, output, input], variance=variance, covariance=None)
+        return replace(
+            self, response=self.matrices[:, output, input], variance=variance, covariance=None, input_errors=None
+        )
+
+    def under(self, response: ComplexArray) -> "FrequencyResponse":
+        """The measurement as it is where the response is this one (F,): itself unless the input has errors."""
+        if self.input_errors is None or self.variance is None:
+            return self
+        found, variance = self.input_errors.under(response)
+        return replace(self, response=found, variance=variance)
 
     def lines(self, kept: slice | IntArray) -> "FrequencyResponse":
         """The measurement at some of its lines only."""
@@ -198,6 +210,7 @@ class FrequencyResponse:
             response=self.response[kept],
             variance=variance,
             covariance=covariance,
+            input_errors=None if self.input_errors is None else self.input_errors.lines(kept),
         )
 
 

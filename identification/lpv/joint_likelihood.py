@@ -1,7 +1,7 @@
 """Parameter-varying models from all experiments at once."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated, ClassVar, Literal
 
 import numpy as np
@@ -25,6 +25,7 @@ from identification.scheduling import ParameterDependence
 from identification.signals import FrequencyResponse, Measurement, TimeRecord
 
 VARIANCE_ROUNDS = 30
+REBUILT, SETTLED = 20, 1e-3
 
 
 @dataclass(frozen=True)
@@ -92,6 +93,7 @@ class JointLikelihood:
         about = [one.about_its_level() if isinstance(one, TimeRecord) else one for one in experiments]
         starts = _starts(structure, dependence, about, local, prior, transfer)
         solution, variances = _fit(residuals, starts)
+        residuals, solution, variances = _with_input_errors(residuals, solution, variances)
         outcome = _outcome(solution, residuals, variances)
         determined = outcome.status != "not_identifiable"
         covariance = solution.covariance if determined else np.full((dependence.size, dependence.size), np.inf)
@@ -141,6 +143,30 @@ def _fit(
         iterations = solution.outcome.iterations
     outcome = Outcome(solution.outcome.status, solution.outcome.advice, iterations)
     return LeastSquaresSolution(solution.x, solution.residual, solution.jacobian, outcome), variances
+
+
+def _with_input_errors(
+    residuals: JointResiduals, solution: LeastSquaresSolution, variances: dict[str, float]
+) -> tuple[JointResiduals, LeastSquaresSolution, dict[str, float]]:
+    """Responses whose input has errors are rebuilt under each solution until that stays (`FrequencyResponse.under`)."""
+    given = residuals.experiments
+    if not any(isinstance(one, FrequencyResponse) and one.input_errors is not None for one in given):
+        return residuals, solution, variances
+    for _ in range(REBUILT):
+        before = solution.x
+        found = tuple(_under(residuals, m, one, before) for m, one in enumerate(given))
+        residuals = replace(residuals, experiments=found)
+        solution, variances = _fit(residuals, iter([[before]]))
+        if np.linalg.norm(solution.jacobian @ (solution.x - before)) < SETTLED:
+            break
+    return residuals, solution, variances
+
+
+def _under(residuals: JointResiduals, m: int, data: Measurement, theta: FloatArray) -> Measurement:
+    if not isinstance(data, FrequencyResponse) or data.input_errors is None:
+        return data
+    zeta = residuals.transfer[m] @ theta
+    return data.under(residuals.structure.plant_response(zeta, data.frequencies, data.held))
 
 
 def _starts(

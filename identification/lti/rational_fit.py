@@ -23,6 +23,7 @@ from identification.signals import FrequencyResponse
 
 LINES_FOR_DELAY = 400
 OTHERS = 4
+REBUILT, SETTLED = 20, 1e-3
 
 Weighting = Literal["variance", "relative", "absolute"]
 
@@ -35,8 +36,10 @@ class RationalFit:
 
     `weighting` "variance" takes σ_k² from the data: the estimate is the most likely one, its covariance (JᵀJ)⁻¹ is
     exact to first order for known variances and inflated by d/(d − 2) for variances estimated with d degrees of
-    freedom. "relative" takes σ_k = |Ĝ_k|, "absolute" σ_k = 1; their covariance uses the variances of the data where
-    there are any, and else the scale s² = Σ|Ĝ_k − G|²/σ_k² · 2/(2F − n).
+    freedom. Where the input has errors (`input_errors`) it is that of errors in both signals, Ĝ_k and σ_k rebuilt under
+    each solution until that moves by no more than a thousandth of its deviation. "relative" takes σ_k = |Ĝ_k|,
+    "absolute" σ_k = 1; their covariance uses the variances of the data where there are any, and else the scale
+    s² = Σ|Ĝ_k − G|²/σ_k² · 2/(2F − n).
 
     `noise_variance` of the model is the factor on the assumed σ_k²: 1 for "variance", else s², the relative or the
     absolute variance of the noise. With `stable` the poles stay in the stable region; a rigid body or an
@@ -70,6 +73,8 @@ class RationalFit:
         scaled = replace(plain, frequency_scale=frequency_scale(plain, data))
         weights = self._weights(data)
         solution = self._search(scaled, data, weights)
+        if self.weighting == "variance" and data.input_errors is not None:
+            data, weights, solution = self._with_input_errors(scaled, data, weights, solution)
         factors = rescale(scaled, structure.frequency_scale)
         free = real_count(data) - structure.size
         scale = 1.0 if self.weighting == "variance" else solution.cost / free
@@ -133,7 +138,9 @@ class RationalFit:
             return relaxation_fit(scaled, data, weights, self.max_iterations)
         if scaled.delay:
             kept = np.unique(np.linspace(0, len(data) - 1, min(len(data), LINES_FOR_DELAY)).round().astype(np.int64))
-            few = replace(data, frequencies=data.frequencies[kept], response=data.response[kept], variance=None)
+            few = replace(
+                data, frequencies=data.frequencies[kept], response=data.response[kept], variance=None, input_errors=None
+            )
             rough = self._searches(scaled, few, weights[kept], self._starts(scaled, few, weights[kept], 24), 40)
             starts = np.stack([solution.x for solution in sorted(rough, key=lambda s: s.cost)[:3]])
         else:
@@ -142,6 +149,28 @@ class RationalFit:
         if scaled.delay:
             best.x[-1] = shortest(best.x[-1], data.frequencies)
         return best
+
+    def _with_input_errors(
+        self,
+        scaled: RationalStructure,
+        data: FrequencyResponse,
+        weights: FloatArray,
+        solution: LeastSquaresSolution,
+    ) -> tuple[FrequencyResponse, FloatArray, LeastSquaresSolution]:
+        """Data, weights and solution that agree: the data are rebuilt under each solution until it stays."""
+        given, before = data, solution.x
+        for _ in range(REBUILT):
+            data = given.under(scaled.plant_response(before, given.frequencies, given.held))
+            weights = self._weights(data)
+            if self.relaxation:
+                solution = self._search(scaled, data, weights)
+            else:
+                (solution,) = self._searches(scaled, data, weights, before[None], self.max_iterations)
+            moved = np.linalg.norm(solution.jacobian @ (solution.x - before))
+            before = solution.x
+            if moved < SETTLED:
+                break
+        return data, weights, solution
 
     def _with_delay_advice(
         self,

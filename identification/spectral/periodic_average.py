@@ -9,6 +9,7 @@ from scipy.special import fdtri
 from identification.arrays import BoolArray, ComplexArray, FloatArray
 from identification.errors import MisuseError, RangeError
 from identification.lti.response_tests import real_lines
+from identification.measurements.input_errors import InputErrors
 from identification.signals import FrequencyResponse, TimeRecord
 from identification.spectral.resolution import converter_step, repeated_error, require_changing
 
@@ -20,10 +21,11 @@ class PeriodicAverage:
         Ĝ_k = Ȳ_k/Ū_k,   σ̂_k² = Σ_p |Y_kp − Ĝ_k U_kp|² / (P(P − 1)|Ū_k|²)      [PintelonSchoukens2012, (2-31)–(2-33)]
 
     σ̂_k² is |Ĝ|²(σ_Y²/|Y|² + σ_U²/|U|² − 2 Re σ_YU/(Y U*)) of the sample (co)variances, so noise on the input counts and
-    an input repeated exactly is a special case. It has d = P − 1 degrees of freedom (σ̂² ~ σ² χ²_{2d}/2d). At ω = 0 and
-    at the Nyquist frequency the response is real: there σ̂² is twice the variance of the real number, with d instead
-    of 2d real degrees of freedom; `real_lines=False` leaves those lines out. ω = 0 is used only where the operating
-    levels were stated: otherwise a mean value says nothing about the gain.
+    an input repeated exactly is a special case. Where it is not, the errors of both signals go along (`input_errors`),
+    from which estimators weigh without the noise of the datum. σ̂_k² has d = P − 1 degrees of freedom
+    (σ̂² ~ σ² χ²_{2d}/2d). At ω = 0 and at the Nyquist frequency the response is real: there σ̂² is twice the variance of
+    the real number, with d instead of 2d real degrees of freedom; `real_lines=False` leaves those lines out. ω = 0 is
+    used only where the operating levels were stated: otherwise a mean value says nothing about the gain.
 
     Excited lines are those with |Ū_k| above `threshold` times the largest and above four of its standard deviations.
     With `drop_periods` None, leading periods, at most half of them, are dropped while the energy of their difference
@@ -76,7 +78,9 @@ class PeriodicAverage:
         response = y[:, lines].mean(axis=0) / mean
         errors = y[:, lines] - response * u[:, lines]
         power = np.sum(abs(errors) ** 2, axis=0) / (count - 1) * np.where(real[lines], 2.0, 1.0)
-        power = np.maximum(power, _rounding(u, y, response)) + self._converter(record, y) * np.where(real[lines], 2, 1)
+        rounding = self._converter(record, y) * np.where(real[lines], 2, 1)
+        least = _rounding(u, y, response)
+        power = np.maximum(power, least) + rounding
         variance = power / (count * abs(mean) ** 2)
         return FrequencyResponse(
             omega[lines],
@@ -86,6 +90,7 @@ class PeriodicAverage:
             variance,
             float(count - 1),
             held=record.held if self.continuous_time else None,
+            input_errors=InputErrors.of_mean(u[:, lines], y[:, lines], least + rounding, real[lines]),
         )
 
     @staticmethod
