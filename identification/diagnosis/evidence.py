@@ -105,10 +105,13 @@ def refit_short_list(
     ordered = [score for i, score in enumerate(ordered) if i < length or id(score) in {*scanned, *strong}]
     ranked = list(strong)
     ordered.sort(key=lambda score: ranked.index(id(score)) if id(score) in strong else len(ranked))
+    ordered.sort(key=lambda score: bool(score.candidate.effect.refines))
     found: list[tuple[Score, Fit]] = []
     least = np.inf
     for score in ordered:
         hopeless = (1.0 if base.rows.scaled else HOPELESS_SHARE) * least + HOPELESS
+        if _needless(base, score, found):
+            continue
         around = origin if id(score) in scanned and not least < NOISE * base.rows.count else None
         one = _refitted(base, score, hopeless, around, strong.get(id(score), ()))
         if one is not None:
@@ -123,6 +126,13 @@ def refit_short_list(
     evidence = sorted((_judged(model, *pair, count) for pair in found), key=lambda one: one.bic)
     weighted = _weighted(beside, _without_needless(evidence))
     return ShortList(tuple(weighted), none, beside, 1 - sum(one.weight for one in weighted))
+
+
+def _needless(base: Fit, score: Score, found: Sequence[tuple[Score, Fit]]) -> bool:
+    """Whether the effect refines one that leaves nothing material."""
+    plain = [one for other, one in found if other.candidate.effect.kind == score.candidate.effect.refines]
+    noise = 1.0 if base.rows.scaled else SmoothRemainder(base).of(base).noise
+    return any(one.outcome.ok and explained_share(base, one, noise) >= 1 for one in plain)
 
 
 def _without_needless(ordered: Sequence[Evidence]) -> list[Evidence]:

@@ -24,6 +24,7 @@ class Hysteresis(Feedback):
     unit: ClassVar[str] = "input unit"
     source: ClassVar[str] = "[Wen1976, (3)]"
     states: ClassVar[float] = 1
+    remembers: ClassVar[bool] = True
     oversampling: ClassVar[int] = 8
     sign: ClassVar[int] = 1
     parameters: ClassVar[tuple[FurtherParameter, ...]] = (

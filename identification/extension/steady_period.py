@@ -166,6 +166,12 @@ def _settled(model: Model, batch: Batch, point: FloatArray) -> Flow:
             f"{where} no steady state was found: the effects are too strong for this input; play it at a lower level",
             "input",
         ) from error
+    if flow.closing is not None and not flow.closing.stable:
+        raise NoSteadyStateError(
+            f"{where} the output does not repeat from period to period: small changes of the steady state grow, as the"
+            " effects are too strong for this input; play it at another level",
+            "input",
+        )
     structure = model.structure
     poles = structure.poles(flow.setting.zeta)
     if not np.all(abs(poles) < 1 if structure.is_discrete else poles.real < 0):

@@ -151,6 +151,10 @@ class PhysicalForm(Structure):
         every = np.insert(zeta[..., : self._count], self._fixed, self._known, axis=-1)
         return np.asarray(every * self._scales)
 
+    def without_direct_path(self, zeta: FloatArray) -> tuple[Structure, FloatArray, float]:
+        """That of the `plain` form."""
+        return self.plain.without_direct_path(self.to_plain(zeta))
+
     def sampled(self, zeta: FloatArray, step: float) -> tuple[FloatArray, FloatArray] | None:
         """That of the `plain` form."""
         plain = self.to_plain(zeta)

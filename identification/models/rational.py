@@ -178,6 +178,14 @@ class RationalStructure(Structure):
             return matrix, np.eye(1, n)[0]
         return expm(matrix * (self.frequency_scale * step)), np.eye(1, n)[0]
 
+    def without_direct_path(self, zeta: FloatArray) -> tuple[Structure, FloatArray, float]:
+        """In continuous time for n_b = n_a > 0 without a delay."""
+        if self.is_discrete or self.delay or self.n_b != self.n_a or self.n_a == 0:
+            return self, zeta, 0.0
+        a, b, *_ = self.split(zeta)
+        rest = RationalStructure(self.n_a, self.n_a - 1, frequency_scale=self.frequency_scale)
+        return rest, np.concatenate([a, b[1:] - b[0] * a]), float(b[0])
+
     def poles(self, zeta: FloatArray) -> ComplexArray:
         """Poles of G for ζ (…, n), as (…, n_a): in the z-plane, or in rad/s in continuous time."""
         scale = 1.0 if self.is_discrete else self.frequency_scale

@@ -173,6 +173,10 @@ class Structure(ABC):
         """[A B; 0 1] (n_x + 1, n_x + 1) over one step of a held input, and C (n_x,), for ζ (n,); None: not known."""
         return None
 
+    def without_direct_path(self, zeta: FloatArray) -> "tuple[Structure, FloatArray, float]":
+        """The structure and ζ of G − G(∞), and G(∞); as it is where that does not say."""
+        return self, zeta, 0.0
+
     def _require_unheld(self, held: HeldInput | None) -> None:
         if held is not None and not self.is_discrete:
             raise MisuseError("this structure in continuous time is not seen through a held input", "structure")

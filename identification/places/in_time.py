@@ -60,25 +60,25 @@ def _in_time(
     structure: Structure, zeta: bytes, sample_time: float, step: float, leak: float, order: int
 ) -> tuple[FloatArray, ...] | None:
     """A, exp(A h), B, C, D of one plant."""
-    found = structure.sampled(np.frombuffer(zeta), sample_time if structure.is_discrete else step)
-    if found is None or not np.all(np.isfinite(found[0])):
+    over = sample_time if structure.is_discrete else step
+    own, zeta_of_own, direct = structure.without_direct_path(np.frombuffer(zeta))
+    found = own.sampled(zeta_of_own, over)
+    if found is None or (direct and not order) or not np.all(np.isfinite(found[0])):
         return None
     generator = logarithm(found[0])
     if generator is None:
         return None
-    n, over = len(found[1]), sample_time if structure.is_discrete else step
-    carried = [found[1]]
+    n = len(found[1])
     a, b = np.zeros((n + order, n + order)), np.zeros(n + order)
     a[:n, :n], b[:n] = generator[:n, :n] / over, generator[:n, n] / over
+    carried = [np.pad(found[1], (0, order))]
     for i in range(order):
-        row = np.zeros(n + order)
-        row[: len(carried[-1])] = carried[-1]
-        a[n + i] = row
+        a[n + i], b[n + i] = carried[-1], 0.0 if i else direct
         carried.append(np.eye(n + order)[n + i])
-    q = np.pad(carried[-1], (0, n + order - len(carried[-1])))
     a -= leak * np.eye(n + order)
-    flow = q @ a if order == 0 else np.pad(carried[-2], (0, n + order - len(carried[-2])))
-    return a, expm(a * step), b, np.stack([q, flow]), np.array([0.0, q @ b if order == 0 else 0.0])
+    flow = carried[-2] if order else carried[-1] @ a
+    at_once = float(carried[-1] @ b) if not order else direct if order == 1 else 0.0
+    return a, expm(a * step), b, np.stack([carried[-1], flow]), np.array([0.0, at_once])
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,6 +117,14 @@ class LinearisedInTime:
         steps[..., :count] = [[_row_times(self.plants.transition[i], kept[:, j]) for j in range(n)] for i in range(n)]
         steps[..., count:] = np.eye(n)[:, :, None, None]
         return Recursion(steps)
+
+    @property
+    def growth(self) -> FloatArray:
+        """By how much a small change of the states is larger a period later, at most, (M,): Floquet's multipliers."""
+        whole = np.moveaxis(self._recursion.whole, -1, 0)
+        return np.asarray(
+            abs(np.linalg.eigvals(whole)).max(axis=1) if np.all(np.isfinite(whole)) else np.full(len(whole), np.inf)
+        )
 
     def force(self, unyielding: FloatArray) -> FloatArray:
         """φ (…, M, N) for what it would be if the motion did not react to it, (…, M, N)."""

@@ -25,9 +25,12 @@ class Linearised:
     def __init__(self, loop: Loop, x: ComplexArray) -> None:
         self.loop = loop
         self.slopes = []
+        self.motions: list[tuple[FloatArray, FloatArray, FloatArray]] = []
         for effect, e in loop.forces:
-            by_q, by_flow = effect.slopes(*loop.motion(effect, x))
+            motion = loop.motion(effect, x)
+            by_q, by_flow = effect.slopes(*motion)
             self.slopes.append((effect, e * by_q, e * by_flow))
+            self.motions.append((e, *motion))
         self.yielding = loop.yielding(x) if loop.order else np.ones(len(x))
 
     @cached_property
@@ -48,10 +51,11 @@ class Linearised:
         total = np.zeros_like(self.loop.response)
         core, mean = self.loop.split(change)
         batch, finer = self.loop.batch, self.loop.finer
-        for effect, by_q, by_flow in self.slopes:
+        for (effect, by_q, by_flow), (e, at_q, at_flow) in zip(self.slopes, self.motions, strict=True):
             q = batch.signal(displacement(core, mean, batch, effect.order), finer)
             flow = batch.signal(flow_rate(core, batch, effect.order), finer)
-            total += effect.rates(batch) * batch.spectrum(by_q * q + by_flow * flow)
+            force = by_q * q + by_flow * flow if effect.at_once else e * effect.changed(at_q, at_flow, q, flow)
+            total += effect.rates(batch) * batch.spectrum(force)
         moved = core + self.loop.response * total
         if not self.loop.order:
             return moved
@@ -73,6 +77,11 @@ class Linearised:
             return None
         by_q, by_flow = (np.sum(parts, axis=0) for parts in list(zip(*self.slopes, strict=True))[1:])
         return LinearisedInTime(plants, by_q, by_flow)
+
+    @property
+    def growth(self) -> FloatArray | None:
+        """Of small changes over a period (M,); None where plants have no states."""
+        return None if self._in_time is None else self._in_time.growth
 
     def _over_time(self, wanted: ComplexArray, in_time: LinearisedInTime) -> ComplexArray:
         """With the mean of the displacement as its own equation has it for the forces that are found."""

@@ -76,6 +76,18 @@ class Loop:
         """The lines and the mean; without it zero."""
         return x[:, : len(self.batch.omega)], x[:, -1].real if self.order else np.zeros(len(x))
 
+    @property
+    def free_motion(self) -> tuple[FloatArray, FloatArray]:
+        """q and q̇ (M, L·finer) without forces."""
+        return self.motion(self.forces[0][0], self.start(self.driven), np.zeros_like(self.driven))
+
+    def of_force(self, force: FloatArray) -> ComplexArray:
+        """The unknowns for a force (M, L·finer) in time."""
+        held = self.finer if self.between is not None else 1
+        kept = force if held == 1 else force.reshape(len(force), -1, held).mean(axis=-1)
+        lines = self.forces[0][0].rates(self.batch) * self.batch.spectrum(kept)
+        return self.balanced(self.start(self.answer(np.asarray(lines))))
+
     def force_lines(self, x: ComplexArray) -> ComplexArray:
         """F (M, K) of all forces."""
         total = np.zeros_like(self.response)
@@ -135,3 +147,12 @@ class Loop:
     def part(self, share: float) -> "Loop":
         """The loop with a share of all forces."""
         return self if share >= 1 else replace(self, forces=[(effect, share * e) for effect, e in self.forces])
+
+    @property
+    def jumps(self) -> bool:
+        """Whether a force depends on more than a moment, as those that jump do."""
+        return not all(effect.at_once for effect, _ in self.forces)
+
+    def rounded(self, width: float) -> "Loop":
+        """The loop with the corners of all forces rounded off."""
+        return replace(self, forces=[(effect.rounded(width), e) for effect, e in self.forces])

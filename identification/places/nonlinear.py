@@ -13,7 +13,7 @@ from identification.places.intersample import OFFSETS
 from identification.places.motion import motions, powers
 from identification.places.place import Effect, Flow, FurtherParameter
 
-SLOPE_STEP = 1e-4
+SLOPE_STEP, CHANGE = 1e-4, 1e-6
 
 
 @dataclass(frozen=True)
@@ -42,6 +42,7 @@ class Feedback(Effect):
         x = G u + e f(q, q̇),   q = s^(−d) u,   where the motion is `driven`: the input is the motion, the output a force
 
     `on_displacement`: the force depends on q, else on q̇; `differentiated`: f is a flux and the force is its rate.
+    `remembers`: the force depends on what was before; `at_once`: it depends on one moment only.
     `curve`: a name that effects share whose f is the same function, of the displacement in one and the flow in another.
     """
 
@@ -49,6 +50,8 @@ class Feedback(Effect):
     needs_records: ClassVar[bool] = True
     on_displacement: ClassVar[bool] = True
     differentiated: ClassVar[bool] = False
+    remembers: ClassVar[bool] = False
+    at_once: ClassVar[bool] = True
     curve: ClassVar[str] = ""
 
     order: int = 0
@@ -58,6 +61,10 @@ class Feedback(Effect):
     def force(self, x: FloatArray, velocity: FloatArray) -> FloatArray:
         """f(q, q̇) (M, L) over one period."""
 
+    def rounded(self, width: float) -> Self:
+        """With its corners rounded off over this share of the motion, where it has any, to be sharpened again."""
+        return self
+
     def slopes(self, x: FloatArray, velocity: FloatArray) -> tuple[FloatArray, FloatArray]:
         """∂f/∂q and ∂f/∂q̇ (M, L) at each time, by central differences of the one that f depends on."""
         by = x if self.on_displacement else velocity
@@ -65,6 +72,20 @@ class Feedback(Effect):
         up, down = (self.force(by + side * step, by + side * step) for side in (1, -1))
         slope, none = np.asarray((up - down) / (2 * step)), np.zeros_like(by)
         return (slope, none) if self.on_displacement else (none, slope)
+
+    def changed(self, x: FloatArray, velocity: FloatArray, by_x: FloatArray, by_velocity: FloatArray) -> FloatArray:
+        """The change of f (M, L) with small changes of q and q̇ (M, L), by differences: for what is not `at_once`."""
+        motion, by = (x, by_x) if self.on_displacement else (velocity, by_velocity)
+        size = np.sqrt(np.mean(motion**2, axis=-1, keepdims=True)) + np.finfo(np.float64).tiny
+        step = CHANGE * size / (abs(by).max(axis=-1, keepdims=True) + np.finfo(np.float64).tiny)
+        up, down = (self.force(x + side * step * by_x, velocity + side * step * by_velocity) for side in (1, -1))
+        return np.asarray((up - down) / (2 * step))
+
+    def held_against(self, q: FloatArray, flow: FloatArray, e: FloatArray, by: FloatArray) -> FloatArray:
+        """e f (M,) at one instant for q, q̇ (M,) without it, of which it takes `by` (2, M) for each of its units."""
+        first = e * self.force(q[:, None], flow[:, None])[:, 0]
+        second: FloatArray = e * self.force((q - by[0] * first)[:, None], (flow - by[1] * first)[:, None])[:, 0]
+        return second
 
     def lines(self, batch: Batch, x: FloatArray, velocity: FloatArray, held: int = 1) -> ComplexArray:
         """F (M, K) of the force for q and q̇ (M, L) over one period; its means over `held` values where it is held."""

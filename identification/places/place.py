@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import product
-from typing import ClassVar, Literal, Self
+from typing import ClassVar, Literal, Protocol, Self
 
 import numpy as np
 
@@ -19,6 +19,21 @@ from identification.places.motion import displacement, flow_rate
 from identification.signals import HeldInput
 
 Quantity = Literal["frequency", "time", "input", "output", "displacement", "flow", "number"]
+
+
+class Reaction(Protocol):
+    """What forces make of a change (M, K) of the core; `x`: the unknowns of the steady state that it belongs to."""
+
+    @property
+    def x(self) -> ComplexArray:
+        """As the loop of the forces has them."""
+
+    @property
+    def stable(self) -> bool:
+        """Whether the steady state is one that small changes lead back to."""
+
+    def __call__(self, change: ComplexArray) -> ComplexArray:
+        """The change with the reaction of the forces."""
 
 
 @dataclass(frozen=True)
@@ -84,7 +99,7 @@ class Flow:
     acting: "tuple[tuple[Effect, FloatArray], ...]"
     gradient: Callable[[bool], ComplexArray]
     mean: FloatArray
-    closing: Callable[[ComplexArray], ComplexArray] | None = None
+    closing: Reaction | None = None
     between: Between | None = None
     shown: ComplexArray | None = None
     recorder: Callable[[ComplexArray], ComplexArray] | None = None

@@ -41,6 +41,14 @@ class Recursion:
         inverse = _inverse(flat).reshape(m, n * r, n, r)
         return np.asarray(np.roll(inverse, -1, axis=-1).reshape(m, n * r, n * r))
 
+    @property
+    def whole(self) -> FloatArray:
+        """E_{N−1} … E_0 (n, n, M)."""
+        found = self._levels[-1]
+        while found.shape[-1] > 1:
+            found = _product(found[..., 1::2], found[..., ::2])
+        return np.asarray(found[..., 0])
+
     def states(self, g: FloatArray) -> FloatArray:
         """w_0 … w_{N−1} (n, …, M, N) for g (n, …, M, N)."""
         levels = [g]

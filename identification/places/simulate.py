@@ -10,6 +10,7 @@ from identification.comparison.batch import Batch
 from identification.errors import MisuseError
 from identification.places.aliases import aliases
 from identification.places.core import Reshaped, core_gradient, core_response
+from identification.places.fine import FineGrid, fine_grid
 from identification.places.intersample import OFFSETS, Between, is_followed
 from identification.places.linear import Coefficient, Divisor
 from identification.places.linear_path import images, linear_path
@@ -18,7 +19,7 @@ from identification.places.motion import displacement, flow_rate
 from identification.places.nonlinear import Actuator, Added, Feedback, Sensor
 from identification.places.place import Effect, Flow, Setting, passing
 from identification.places.recorder import Recorder
-from identification.places.steady import Closing, steady
+from identification.places.steady import Closing, NoSteadyStateError, steady
 from identification.signals import HeldInput
 
 Acting = tuple[Effect, FloatArray]
@@ -35,15 +36,28 @@ def simulate(setting: Setting, acting: Sequence[Acting], batch: Batch, start: Fl
     batch holds frequency responses.
     """
     loop, setting = _prepared(setting, acting, batch)
-    if loop.forces:
-        x = steady(loop, None if start is None else loop.start(start.core, start.mean))
-        (core, mean), force = loop.split(x), loop.force_lines(x)
-        closing = Closing(loop, x)
-    else:
-        force, mean, closing = np.zeros_like(loop.driven), np.zeros(len(loop.driven)), None
-        core = loop.answer(force)
-    core = core + _reaction(setting, acting, batch)
-    return _shown(setting, acting, loop, force, core, core, mean, closing)
+    if not loop.forces:
+        force, mean = np.zeros_like(loop.driven), np.zeros(len(loop.driven))
+        core = loop.answer(force) + _reaction(setting, acting, batch)
+        return _shown(setting, acting, loop, force, core, core, mean, None)
+    grid = fine_grid(loop, setting)
+    inner = loop if grid is None else grid.loop(loop, setting, acting)
+    x = _steady(inner, start, grid)
+    force, mean = inner.force_lines(x)[:, : len(batch.omega)], inner.split(x)[1]
+    core = loop.answer(force) + _reaction(setting, acting, batch)
+    return _shown(setting, acting, loop, force, core, core, mean, Closing(inner, x, grid))
+
+
+def _steady(inner: Loop, start: Flow | None, grid: FineGrid | None) -> ComplexArray:
+    """From another steady state, from signals that are none (and if that leads nowhere, anew), or anew."""
+    if start is None:
+        return steady(inner)
+    if start.closing is not None and start.closing.x.shape == inner.start(inner.driven).shape:
+        return steady(inner, start.closing.x)
+    try:
+        return steady(inner, inner.start(start.core if grid is None else grid.of(start.core), start.mean))
+    except NoSteadyStateError:
+        return steady(inner)
 
 
 def followed(setting: Setting, acting: Sequence[Acting], batch: Batch, measured: ComplexArray) -> Flow:
@@ -117,7 +131,7 @@ def _shown(
     linear = factored + path.beside * through
     if held is not None and path.acts:
         linear = linear + images(setting, acting, batch.omega, held) * loop.entering
-    linear = linear + _aliased(setting, loop, core, mean)
+    linear = linear + _aliased(setting, loop, core, mean, closing)
     shown, recorder = _measured(linear, acting, batch), _recorder(acting, batch)
     output = shown if recorder is None else recorder(shown)
     output, factor = output + batch.transient(output), path.factor * np.ones_like(core)
@@ -126,7 +140,8 @@ def _shown(
     def gradient(seen: bool) -> ComplexArray:
         return core_gradient(setting, acting, batch.omega, held if seen else None, seen)
 
-    return Flow(batch, setting, *made, gradient, mean, closing, loop.between, shown, recorder)
+    cache = {} if closing is None or closing.grid is None else _motions(closing)
+    return Flow(batch, setting, *made, gradient, mean, closing, loop.between, shown, recorder, cache)
 
 
 def _recorder(acting: Sequence[Acting], batch: Batch) -> Callable[[ComplexArray], ComplexArray] | None:
@@ -143,12 +158,27 @@ def _recorder(acting: Sequence[Acting], batch: Batch) -> Callable[[ComplexArray]
     return recorded
 
 
-def _aliased(setting: Setting, loop: Loop, core: ComplexArray, mean: FloatArray) -> ComplexArray:
+def _motions(closing: Closing) -> dict[tuple[str, int, int], FloatArray]:
+    """Displacement and flow on the fine grid as signals of a flow."""
+    assert closing.grid is not None
+    found = {}
+    for effect, _ in closing.loop.forces:
+        q, flow = closing.loop.motion(effect, closing.x)
+        found[("q of core", effect.order, closing.grid.n)] = q
+        found[("flow of core", effect.order, closing.grid.n)] = flow
+    return found
+
+
+def _aliased(
+    setting: Setting, loop: Loop, core: ComplexArray, mean: FloatArray, closing: Closing | None
+) -> ComplexArray:
     """What the forces of a motion put beyond the Nyquist frequency, on the lines (M, K) where samples show it."""
     total = np.zeros_like(core)
     followed_between = loop.between is not None or not loop.batch.repeats
     for effect, e in loop.forces if loop.finer > 1 and not followed_between else ():
-        force = effect.force(*loop.motion(effect, loop.start(core, mean)))
+        fine = closing is not None and closing.grid is not None
+        motion = closing.loop.motion(effect, closing.x) if closing is not None and fine else None
+        force = effect.force(*(motion or loop.motion(effect, loop.start(core, mean))))
         total += e * aliases(force, effect.differentiated, setting.structure, setting.zeta, loop.batch)
     return total
 

@@ -51,6 +51,7 @@ def simulated(*effects: tuple[Effect, float], p: float = 0.5) -> SteadyPeriod:
     [
         (CubicStiffness(), 30.0, lambda x, v: 30.0 * x**3, 1e-4),
         (CubicStiffness(), 800.0, lambda x, v: 800.0 * x**3, 1e-4),
+        (CubicStiffness(), 1e4, lambda x, v: 1e4 * x**3, 1e-2),
         (QuadraticDamping(), 0.3, lambda x, v: 0.3 * abs(v) * v, 3e-5),
         (CoulombFriction(), 1.0, lambda x, v: np.tanh(v / 0.004), 4e-3),
     ],
@@ -191,7 +192,7 @@ def test_a_logged_quantity_has_the_value_that_is_stated():
 
 def test_where_there_is_no_steady_state_nothing_is_stated():
     with pytest.raises(NoSteadyStateError, match=r"\(0.5\).*too strong"):
-        simulated((CubicStiffness(), 1e4))
+        simulated((CubicStiffness(), -1e4))
     unstable = DISCRETE.with_parameters(np.array([-1.2, 0.52, 0.5, 0.4, 0.25]))
     with pytest.raises(NoSteadyStateError, match=r"\(2\).*unstable"):
         steady_period(unstable, INPUT, 0.5, [[0.0], [2.0]])

@@ -33,6 +33,8 @@ def test_steps_that_are_not_finite_are_no_error():
         (OSCILLATOR[0], OSCILLATOR[1][0], 0),
         (RationalStructure(2, 1, frequency_scale=7.0), np.array([0.3, 1.2, 0.4, 0.1]), 0),
         (RationalStructure(2, 1), np.array([2.0, 50.0, 3.0, 4.0]), 1),
+        (RationalStructure(2, 2), np.array([2.0, 50.0, 3.0, 4.0, 1.0]), 1),
+        (RationalStructure(2, 2, frequency_scale=5.0), np.array([2.0, 50.0, 3.0, 4.0, 1.0]), 2),
         (RationalStructure(3, 1), np.array([2.0, 50.0, 40.0, 3.0, 4.0]), 2),
         (PhysicalForm((Coefficient("J"), Coefficient("d")), (Coefficient("k", fixed=2.0),)), np.array([0.5, 0.7]), 1),
     ],
