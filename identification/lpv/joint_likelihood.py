@@ -18,6 +18,7 @@ from identification.lpv.stacking import asymptotics_advice, stacked_points
 from identification.lti.initial_conditions import InitialConditions, fitted_record
 from identification.lti.likelihood import require_same_sampling
 from identification.lti.multistart import lowest_minimum
+from identification.measurements.loop_delay import require_delay
 from identification.models.model import Model
 from identification.models.physical import RationalForm
 from identification.outcome import Outcome
@@ -77,6 +78,9 @@ class JointLikelihood:
         few records or samples are given for H or for θ, MisuseError when data and structure do not fit. Data that do
         not determine θ for another reason give the outcome "not_identifiable" and infinite variances.
         """
+        for one in experiments:
+            if isinstance(one, TimeRecord):
+                require_delay(structure.plain, one)
         points = stacked_points(structure, dependence, experiments, prior)
         transfer = dependence.matrix(points)
         _require_information(structure, transfer, experiments, prior)
@@ -91,13 +95,13 @@ class JointLikelihood:
         )
         residuals.require_enough()
         about = [one.about_its_level() if isinstance(one, TimeRecord) else one for one in experiments]
-        starts = _starts(structure, dependence, about, local, prior, transfer)
+        starts = _starts(structure, dependence, about, local, prior, residuals)
         solution, variances = _fit(residuals, starts)
         residuals, solution, variances = _with_input_errors(residuals, solution, variances)
         outcome = _outcome(solution, residuals, variances)
         determined = outcome.status != "not_identifiable"
         covariance = solution.covariance if determined else np.full((dependence.size, dependence.size), np.inf)
-        model = Model(structure, dependence, solution.x, covariance, residuals.reported_variance(variances))
+        model = Model(structure, dependence, solution.x, covariance, residuals.reported_variance(variances, solution.x))
         tests = joint_tests(residuals, solution) if determined else ()
         return Estimate(model, outcome, tests, tuple(local))
 
@@ -175,7 +179,7 @@ def _starts(
     experiments: Sequence[Measurement],
     local: Sequence[LocalEstimate],
     prior: Model | None,
-    transfer: FloatArray,
+    residuals: JointResiduals,
 ) -> Iterator[list[FloatArray]]:
     quick = [] if prior is None else [prior.theta]
     usable = [estimate for estimate in local if estimate.outcome.ok and estimate.model.structure == structure]
@@ -186,8 +190,8 @@ def _starts(
         quick.append(GeneralisedLeastSquares().estimate(structure, dependence, theirs, usable, prior).model.theta)
     except MisuseError:
         pass
-    yield [theta for theta in quick if np.all(structure.stable(transfer @ theta))]
-    yield pooled_starts(structure, transfer, experiments)
+    yield [theta for theta in quick if residuals.stable(theta)]
+    yield pooled_starts(structure, residuals.transfer, experiments)
 
 
 def _of_kind(structure: RationalForm, experiment: Measurement) -> Measurement:

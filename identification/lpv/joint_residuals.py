@@ -10,6 +10,7 @@ from identification.arrays import FloatArray
 from identification.errors import NotIdentifiableError, RangeError
 from identification.least_squares import LeastSquaresSolution
 from identification.lpv.stacking import prior_rows
+from identification.lti.free_noise import RecordInLoop, errors_in_loop
 from identification.lti.initial_conditions import InitialConditions, errors_from, free_parameters, level_errors
 from identification.lti.likelihood import prediction_errors, response_errors
 from identification.lti.response_tests import real_count, variance_inflation
@@ -50,7 +51,7 @@ class JointResiduals:
 
     def _group(self, m: int, experiment: Measurement) -> str | None:
         if isinstance(experiment, TimeRecord):
-            return "records" if self.common else f"record {m}"
+            return "records" if self.common and not isinstance(experiment, RecordInLoop) else f"record {m}"
         return "responses" if experiment.variance is None else None
 
     @property
@@ -88,8 +89,9 @@ class JointResiduals:
             raise NotIdentifiableError("all outputs are zero throughout, nothing can be learnt from them", "output")
 
     def stable(self, theta: FloatArray) -> bool:
-        """Whether the model is stable at every operating point of the experiments."""
-        return bool(np.all(self.structure.stable(self.transfer @ theta)))
+        """Whether the model is stable at every operating point of the experiments that no controller needs to hold."""
+        alone = [not isinstance(one, RecordInLoop) for one in self.experiments]
+        return bool(np.all(self.structure.stable(self.transfer[alone] @ theta)))
 
     def local(self, m: int, theta: FloatArray) -> tuple[FloatArray, FloatArray]:
         """r_m (R,) and ∂r_m/∂ζ (R, n) of one experiment, not weighted by unknown variances."""
@@ -99,6 +101,12 @@ class JointResiduals:
         if data.variance is None and self.relative:
             return response_errors(self.structure, zeta, data, 1 / abs(data.response))
         return response_errors(self.structure, zeta, data)
+
+    def _disturbance(self, m: int, theta: FloatArray) -> float:
+        data = self.experiments[m]
+        assert isinstance(data, RecordInLoop)
+        found = errors_in_loop(self.structure_of_records, self.transfer[m] @ theta, data)
+        return float(np.mean(found.disturbance**2))
 
     def deviation(self, m: int, variances: Mapping[str, float]) -> float:
         """s_m: the root of the group's variance, or what the uncertainty of a stated variance demands."""
@@ -185,7 +193,13 @@ class JointResiduals:
         largest = max(float(np.mean(signal**2)) for signal in signals)
         return max(float(np.finfo(float).eps) ** 2 * largest, float(np.finfo(float).tiny))
 
-    def reported_variance(self, variances: Mapping[str, float]) -> float:
-        """σ̂_e²: the mean over the groups of records; without records the scale of the responses, one where known."""
+    def reported_variance(self, variances: Mapping[str, float], theta: FloatArray) -> float:
+        """σ̂_e²: the mean over the groups of records; without records the scale of the responses, one where known.
+
+        Of a record in a loop, whose noise model is not among the parameters, the variance of the disturbance.
+        """
         records = [variance for group, variance in variances.items() if group.startswith("record")]
+        looped = [m for m, data in enumerate(self.experiments) if isinstance(data, RecordInLoop)]
+        if looped:
+            return float(np.mean([self._disturbance(m, theta) for m in looped]))
         return float(np.mean(records)) if records else float(variances.get("responses", 1.0))

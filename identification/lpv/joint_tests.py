@@ -6,6 +6,7 @@ from identification.arrays import FloatArray
 from identification.least_squares import LeastSquaresSolution
 from identification.lpv.joint_residuals import JointResiduals
 from identification.lpv.stacking import place
+from identification.lti.free_noise import with_nuisance
 from identification.lti.response_tests import gaussian_errors, real_count
 from identification.lti.whiteness import chi_square, input_independence, orthonormal, whiteness
 from identification.outcome import TestResult
@@ -36,8 +37,10 @@ def joint_tests(residuals: JointResiduals, solution: LeastSquaresSolution) -> tu
         if isinstance(data, TimeRecord):
             zeta = residuals.transfer[m] @ solution.x
             covariance = residuals.transfer[m] @ solution.covariance @ residuals.transfer[m].T
-            each.append(_at(where, whiteness(residuals.structure_of_records, zeta, covariance, residual)))
-            each.append(_at(where, input_independence(residuals.structure_of_records, residual, jacobian, data.input)))
+            structure = residuals.structure_of_records
+            beside, taken = with_nuisance(structure, zeta, data, jacobian)
+            each.append(_at(where, whiteness(structure, zeta, covariance, residual, taken=taken)))
+            each.append(_at(where, input_independence(structure, residual, beside, data.input)))
         elif data.variance is not None:
             each.append(_fit_of_response(where, data, residuals.local(m, solution.x)[0], float(leverage[part].sum())))
     freedom = ranks - len(solution.x) + (0 if residuals.prior is None else len(solution.x))

@@ -9,6 +9,7 @@ from scipy.linalg import qr
 from identification.arrays import FloatArray
 from identification.errors import NotIdentifiableError
 from identification.lti.filtering import lfilter
+from identification.lti.free_noise import RecordInLoop, errors_in_loop, marginal_errors, with_free_noise
 from identification.lti.likelihood import delayed, prediction_errors
 from identification.models.rational import RationalStructure
 from identification.signals import TimeRecord
@@ -23,17 +24,22 @@ def fitted_record(
 
     What the plant did within the first n_k samples the input before the record did, which is not known. With "zero" the
     record stays as it is, and only stated levels come off: from rest at u = 0 a mean value is an excitation.
-    Raises NotIdentifiableError for a record that is not longer than the delay.
+    A record with feedback, where the structure has no noise model of its own, gets a free one (`free_noise`), and its
+    start is estimated. Raises NotIdentifiableError for a record that is not longer than the delay.
     """
-    if initial == "zero":
+    in_loop = record.feedback and structure.n_noise == 0
+    if initial == "zero" and not in_loop:
         return structure, record.about_its_level() if record.level_known else record
     lag, kept = structure.n_k, len(record) - structure.n_k
     if kept < 2:
         raise NotIdentifiableError(
             f"the record of {len(record)} samples is no longer than the delay of {lag} samples; record longer", "input"
         )
-    moved = replace(record.about_its_level(), period=None, reference=None)
-    return replace(structure, n_k=0), replace(moved, input=moved.input[:kept], output=moved.output[lag:])
+    about = record.about_its_level()
+    moved = replace(about, period=None, reference=None, input=about.input[:kept], output=about.output[lag:])
+    if in_loop:
+        return replace(structure, n_k=0), with_free_noise(replace(structure, n_k=0), moved)
+    return replace(structure, n_k=0), moved
 
 
 def state_size(structure: RationalStructure) -> int:
@@ -44,8 +50,11 @@ def state_size(structure: RationalStructure) -> int:
 def free_parameters(structure: RationalStructure, initial: InitialConditions, record: TimeRecord) -> int:
     """How many unknowns one record adds: its initial state, and the output's level unless it was stated.
 
-    None where the record is said to start from rest.
+    None where the record is said to start from rest; those of a free noise model count as well.
     """
+    if isinstance(record, RecordInLoop):
+        colour = len(record.colour)
+        return state_size(structure) + 2 * (record.noise_order + colour) + (0 if record.level_known else 1)
     return state_size(structure) + (0 if record.level_known else 1) if initial == "estimate" else 0
 
 
@@ -60,6 +69,9 @@ def errors_from(
     ε and Jᵀε are the exact residual and half gradient of the cost minimised over x, and (JᵀJ)⁻¹ is the block of ζ in
     the covariance of (ζ, x), so x needs no place among the parameters. With "zero" the record starts from rest.
     """
+    if isinstance(record, RecordInLoop):
+        found = marginal_errors(structure, zeta, record)
+        return found.errors, found.jacobian
     if not free_parameters(structure, initial, record):
         return prediction_errors(structure, zeta, record)
     q, r, start_errors = _projection(structure, zeta, record)
@@ -74,6 +86,8 @@ def errors_only(
     structure: RationalStructure, zeta: FloatArray, record: TimeRecord, initial: InitialConditions
 ) -> FloatArray:
     """ε(t) (N,) of `errors_from` without the derivatives."""
+    if isinstance(record, RecordInLoop):
+        return errors_in_loop(structure, zeta, record).errors
     if free_parameters(structure, initial, record):
         q, _, errors = _projection(structure, zeta, record)
         return errors - q @ (q.T @ errors)
@@ -83,7 +97,12 @@ def errors_only(
 def simulated_output(
     structure: RationalStructure, zeta: FloatArray, record: TimeRecord, initial: InitialConditions
 ) -> FloatArray:
-    """G u (N,) with the response to the best initial state and the best level: the output without noise."""
+    """G u (N,) with the response to the best initial state and the best level: the output without noise.
+
+    In a loop y less the disturbance, which is G u where the plant is stable.
+    """
+    if isinstance(record, RecordInLoop):
+        return record.output - errors_in_loop(structure, zeta, record).disturbance
     a, b, _, _, _ = structure.split(zeta)
     denominator = np.concatenate([[1.0], a])
     pulses = np.zeros(len(record))

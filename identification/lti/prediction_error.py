@@ -8,8 +8,9 @@ import numpy as np
 from identification.arrays import FloatArray
 from identification.errors import MisuseError, NotIdentifiableError, RangeError
 from identification.estimates import LocalEstimate
-from identification.least_squares import LeastSquaresSolution
+from identification.least_squares import LeastSquaresSolution, levenberg_marquardt
 from identification.lti.box_jenkins_start import waves
+from identification.lti.free_noise import RecordInLoop, errors_in_loop, turned_out, with_nuisance
 from identification.lti.initial_conditions import (
     InitialConditions,
     errors_from,
@@ -21,6 +22,7 @@ from identification.lti.initial_conditions import (
 from identification.lti.likelihood import delayed, require_same_sampling
 from identification.lti.multistart import lowest_minimum
 from identification.lti.whiteness import input_independence, whiteness
+from identification.measurements.loop_delay import require_delay
 from identification.models.model import LocalModel
 from identification.models.rational import RationalStructure
 from identification.outcome import Outcome, TestResult
@@ -28,6 +30,7 @@ from identification.signals import TimeRecord
 from identification.spectral.resolution import require_changing
 
 LARGEST = 1e60
+CLEARLY = 10.0
 
 
 @dataclass(frozen=True)
@@ -42,7 +45,11 @@ class PredictionError:
     the output being left out) and, where it was not stated, the level of the output; with "zero" the plant starts from
     rest, n_x = 0, and only stated levels are taken off. The noise model starts from rest in both cases.
     The search starts from linear estimates, see `identification.lti.box_jenkins_start`, and stays among stable models.
-    σ̂_e² does not fall below the rounding of the output.
+    σ̂_e² does not fall below the rounding of the output. A record with feedback, where the structure has no H, gets a
+    noise model that is as rich as the data ask for and no part of ζ (`identification.lti.free_noise`); without it the
+    estimate is biased. An unstable plant is taken where it is clearly more likely. `noise_variance` of the model is
+    then that of the disturbance. A plant that answers without delay in a loop that may do so too is refused
+    (`require_delay`).
     """
 
     kind: ClassVar[str] = "prediction_error"
@@ -65,6 +72,7 @@ class PredictionError:
         """
         require_changing(record)
         require_same_sampling(structure, record)
+        require_delay(structure, record)
         full = structure
         structure, record = fitted_record(full, record, self.initial_conditions)
         free = free_parameters(structure, self.initial_conditions, record)
@@ -80,19 +88,30 @@ class PredictionError:
         covariance = variance * solution.covariance * np.outer(units, units)
         if outcome.status == "not_identifiable":
             covariance = np.full_like(covariance, np.inf)
+        tests = _tests(solution, variance, structure, scaled)
+        if isinstance(scaled, RecordInLoop):
+            variance = float(np.mean(errors_in_loop(structure, solution.x, scaled).disturbance ** 2))
         model = LocalModel(full, record.operating_point, solution.x * units, covariance, variance * scales[1] ** 2)
-        return LocalEstimate(
-            model, outcome, _tests(solution, variance, structure, scaled), self._fit(structure, model.zeta, record)
-        )
+        return LocalEstimate(model, outcome, tests, self._fit(structure, model.zeta, record))
 
     def _search(self, structure: RationalStructure, record: TimeRecord, sufficient: bool) -> LeastSquaresSolution:
         first_estimates = waves(structure, record)
-        return lowest_minimum(
-            lambda zeta: errors_from(structure, zeta, record, self.initial_conditions),
+        waves_tried = first_estimates if sufficient else [next(first_estimates)[:1]]
+
+        def evaluate(zeta: FloatArray) -> tuple[FloatArray, FloatArray]:
+            return errors_from(structure, zeta, record, self.initial_conditions)
+
+        found = lowest_minimum(
+            evaluate,
             lambda zeta: errors_only(structure, zeta, record, self.initial_conditions),
             lambda zeta: bool(structure.stable(zeta)),
-            first_estimates if sufficient else [next(first_estimates)[:1]],
+            waves_tried,
         )
+        if not isinstance(record, RecordInLoop) or structure.n_a == 0:
+            return found
+        beyond = levenberg_marquardt(evaluate, turned_out(structure, found.x), tolerance=1e-7)
+        clearly = len(record) * np.log(found.cost / beyond.cost) > CLEARLY
+        return beyond if beyond.outcome.ok and clearly else found
 
     def _fit(self, structure: RationalStructure, zeta: FloatArray, record: TimeRecord) -> float:
         simulated = simulated_output(structure, zeta, record, self.initial_conditions)
@@ -154,9 +173,11 @@ def _outcome(structure: RationalStructure, solution: LeastSquaresSolution, excit
 def _tests(
     solution: LeastSquaresSolution, variance: float, structure: RationalStructure, record: TimeRecord
 ) -> tuple[TestResult, ...]:
+    jacobian, taken = with_nuisance(structure, solution.x, record, solution.jacobian)
+    covariance = variance * solution.covariance
     found = (
-        whiteness(structure, solution.x, variance * solution.covariance, solution.residual),
-        input_independence(structure, solution.residual, solution.jacobian, record.input),
+        whiteness(structure, solution.x, covariance, solution.residual, taken=taken),
+        input_independence(structure, solution.residual, jacobian, record.input),
     )
     return tuple(test for test in found if test is not None)
 

@@ -22,6 +22,7 @@ def whiteness(
     covariance: FloatArray,
     errors: FloatArray,
     lags: int | None = None,
+    taken: int = 0,
 ) -> TestResult | None:
     """Ljung–Box test of the prediction errors ε (N,) of a model ζ (n,) with covariance P_ζ (n, n) [Ljung1999, 16.6].
 
@@ -29,17 +30,18 @@ def whiteness(
 
     P_H is the block of ζ_H in P_ζ; the columns of X_K are the first K values of the impulse responses −q^i/C and q^i/D,
     by which r changes with ζ_H. So the fitted noise model takes up n_c + n_d degrees of freedom when its responses die
-    out within K lags, and fewer when they do not or when other experiments have helped to fit it. None when the record
-    is too short for at least one degree of freedom, P_ζ is not finite, or ε vanishes.
+    out within K lags, and fewer when they do not or when other experiments have helped to fit it. `taken`: parameters
+    of a noise model that is no part of ζ. None when the record is too short for at least one degree of freedom, P_ζ is
+    not finite, or ε vanishes.
     """
-    count = lags or _lags(structure, len(errors))
+    count = lags or _lags(structure, len(errors)) + taken
     energy = float(errors @ errors)
     noise = covariance[structure.n_plant :, structure.n_plant :]
     if energy == 0.0 or not np.all(np.isfinite(noise)):
         return None
     n = len(errors)
     columns = _noise_responses(structure, zeta, count)
-    freedom = count - min(n * float(np.sum((columns @ noise) * columns)), structure.n_noise)
+    freedom = count - taken - min(n * float(np.sum((columns @ noise) * columns)), structure.n_noise)
     if freedom < 1:
         return None
     correlation = np.array([errors[k:] @ errors[:-k] for k in range(1, count + 1)]) / energy

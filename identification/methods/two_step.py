@@ -13,6 +13,7 @@ from identification.lpv.joint_likelihood import JointLikelihood
 from identification.lti.prediction_error import PredictionError
 from identification.lti.rational_fit import RationalFit
 from identification.measurements.inspection import inspect_record
+from identification.methods.in_loop import require_judgeable, with_feedback
 from identification.methods.method import Data, Method, Takes, Task, held_still
 from identification.models.physical import PhysicalForm, RationalForm
 from identification.models.rational import RationalStructure
@@ -48,11 +49,13 @@ class TwoStep(Method):
     def estimate(self, task: Task, progress: Progress) -> Estimate:
         """The model with its local ones; misuse of one experiment is named by its place and operating point."""
         structure = cast(RationalForm, task.structure)
-        data = [self._fitted(structure, one, i, progress) for i, one in enumerate(held_still(task))]
+        given, seen = with_feedback(structure.plain, held_still(task))
+        data = [self._fitted(structure, one, i, progress) for i, one in enumerate(given)]
         local = self._local_estimates(structure, data, progress)
         progress(0.8, "the parameter-varying model")
         found: Estimate = self.joint.estimate(structure, task.dependence, data, local, prior=task.prior)
-        return _with_output_noise(replace(found, fitted=tuple(data)), task.data)
+        noted = replace(found, fitted=tuple(data), tests=(*found.tests, *seen.tests), outcome=seen.noted(found.outcome))
+        return _with_output_noise(noted, task.data)
 
     def _fitted(self, structure: RationalForm, record: Measurement, index: int, progress: Progress) -> Measurement:
         """The data themselves, or the response of a record where the local method takes those."""
@@ -60,6 +63,7 @@ class TwoStep(Method):
             return record
         progress(0.05, f"the frequency response of experiment {index + 1}")
         with _place_named(index, record):
+            require_judgeable(record)
             response = self.spectral.estimate(record)
         return response if structure.is_discrete else replace(response, sample_time=None, held=record.held)
 
