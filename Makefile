@@ -17,7 +17,7 @@ export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
 
-.PHONY: help demo serve test test-numerical check format openapi constraints clean
+.PHONY: help demo serve test test-numerical check format openapi papers constraints clean
 
 help:  ## list the commands
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -50,6 +50,9 @@ format: $(DEV)  ## put the code into the project's format
 
 openapi: $(DEV)  ## write openapi/openapi.json from the code
 	$(BIN)/python -m app.openapi_export
+
+papers: $(DEV)  ## write docs/papers.md: the five papers' tables and figures beside ours
+	$(BIN)/python -m benchmarks.papers $(PAPERS_ARGS)
 
 constraints: $(DEV)  ## pin the versions that are installed now
 	$(BIN)/python scripts/constraints.py > $(VENV)/constraints.txt
