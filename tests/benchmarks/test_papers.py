@@ -13,7 +13,9 @@ def test_white_noise_costs_what_the_paper_prints():
     phi = white_power()
     assert phi == pytest.approx(2.47, rel=0.01)
     assert 4000 * phi == pytest.approx(9880, rel=0.01)
-    assert phi < white_power((0.0, 0.5, 1.0, 1.5))
+    assert phi < white_power((0.0, 1.5, 5.5, 8.0))
+    with pytest.raises(ArithmeticError, match="noise model"):
+        white_power((0.0, 0.5, 1.0, 1.5))
 
 
 def test_a_pair_of_points_of_table_1():
