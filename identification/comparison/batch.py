@@ -17,7 +17,7 @@ from identification.signals import HeldInput
 EXCITED, ODD, EVEN = 0, 1, 2
 NEGLIGIBLE, SMALLEST = 0.1, 0.2
 CLASS_NAMES = ("excited", "unexcited odd", "unexcited even")
-EACH = ("points", "inputs", "variances", "classes", "members", "signals", "ends", "nuisance")
+EACH = ("points", "inputs", "variances", "classes", "members", "signals", "ends", "nuisance", "scatter")
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +50,7 @@ class Batch:
 
     The periods that are compared begin `begun` (M,) seconds after the start of the record, and `averaged` is how many
     they are. `drift`: the share by which the clock of the outputs was seen to run faster, zero where it was not;
-    `parts` (M, P, K): each of the periods then, see `in_parts`.
+    `parts` (M, P, K): each of the periods then, see `in_parts`. `scatter` (M, 2): see `scatter_with_rate`.
     """
 
     points: FloatArray
@@ -86,6 +86,7 @@ class Batch:
     averaged: int = 1
     parts: ComplexArray | None = None
     drift: float = 0.0
+    scatter: FloatArray | None = None
 
     @cached_property
     def real(self) -> BoolArray:

@@ -1,5 +1,6 @@
 """Periodic records whose input does not repeat exactly: noise on it, or a controller that acts on the output."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -7,11 +8,12 @@ import numpy as np
 from identification.arrays import BoolArray, ComplexArray, FloatArray
 from identification.comparison.adaptation import Adaptation
 from identification.comparison.batch import Batch
-from identification.comparison.noise import NEIGHBOURS, noise_of_mean, pooled
+from identification.comparison.noise import NEIGHBOURS, NoiseOfMean, noise_of_mean, pooled
 from identification.comparison.wandering import wandering_noise
 from identification.places.place import Flow
 
 NOTICED, LARGEST, FEW = 1e-4, 3.0, 1
+SHARES, WORTH = tuple(10.0 ** np.arange(-3, 5.1, 0.5)), 6.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,8 +23,8 @@ class BothSignals(Adaptation):
         Σ_k |Y − G U|²/s → min,   s = Var(Y − G U) = σ_y² + |G|² σ_u² − 2 Re(G* σ_yu),   σ_yu = E n_y n_u*
 
     [PintelonSchoukens2012, Section 9.11]. s comes from how Y_p − G U_p differ from period to period, pooled over
-    lines, with the G of the model, and never from the datum that it weighs. The minimum over the true input at every
-    line is Û = U − E(n_u ε*)/s · ε, ε = Y − G U, and with it the gradient of the sum is that of a known input:
+    lines (`_noise`), with the G of the model, and never from the datum that it weighs. The minimum over the true input
+    at every line is Û = U − E(n_u ε*)/s · ε, ε = Y − G U, and with it the gradient of the sum is that of a known input:
     data Û and Y − G(U − Û) are handed on, rebuilt until model and data agree. So is the estimate consistent where u
     depends on past noise of y, for unstable plants as well. ε beyond three deviations is misfit, not noise, and moves
     no input further. Where forces follow from the measured output the line at zero is left out: a plant that does not
@@ -40,8 +42,8 @@ class BothSignals(Adaptation):
         """Input and weights as they follow from the response of the model."""
         response = flow.entry * flow.factor
         errors = self.outputs - response[:, None] * self.inputs
-        pairs = zip(errors, self.walks, strict=True)
-        found = [(wandering_noise if walks else noise_of_mean)(one, batch.real) for one, walks in pairs]
+        every = zip(errors, response, self.walks, strict=True)
+        found = [_noise(e, g, batch.real, wandering_noise if walks else noise_of_mean) for e, g, walks in every]
         smallest = 1e-26 * np.mean(abs(self.outputs) ** 2, axis=(1, 2)) + float(np.finfo(np.float64).tiny)
         variances = np.maximum(np.stack([one.variance for one in found]), smallest[:, None]) + self.rounding
         variances[np.isinf(batch.variances)] = np.inf
@@ -87,6 +89,33 @@ class BothSignals(Adaptation):
             any(one.feedback for one in every),
             tuple(walks for one in every for walks in one.walks),
         )
+
+
+def _noise(
+    errors: ComplexArray,
+    response: ComplexArray,
+    real: BoolArray,
+    noise: Callable[[ComplexArray, BoolArray], NoiseOfMean],
+) -> NoiseOfMean:
+    """Noise of the mean of errors (P, K) whose spectrum may have the shape 1 + ρ |G|² of noise on the input.
+
+        ρ: min 2 (P − 1) Σ_k ln(shape_k · mean over 2w + 1 lines of s_k'/shape_k'),   s the sample variance
+
+    that of lines pooled once the shape is divided out, as a resonance of G is too sharp for a window. ρ = 0, the noise
+    of a controlled or of an undisturbed input, unless that lowers it by more than `WORTH`.
+    """
+    gain = abs(response) ** 2
+    spread = np.var(errors, axis=0, ddof=1) + float(np.finfo(np.float64).tiny)
+    half_width = min(NEIGHBOURS, (int(np.sum(~real)) - 1) // 2)
+    middle = float(np.median(gain))
+    if not (middle > 0 and np.all(np.isfinite(gain))):
+        return noise(errors, real)
+    shapes = [1 + share * gain / middle for share in (0.0, *SHARES)]
+    costs = [float(np.sum(np.log(one * pooled(spread / one, half_width, real))[~real])) for one in shapes]
+    best = int(np.argmin(costs))
+    shape = shapes[best if 2 * (len(errors) - 1) * (costs[0] - costs[best]) > WORTH else 0]
+    found = noise(errors / np.sqrt(shape), real)
+    return replace(found, variance=shape * found.variance)
 
 
 def _pooled(values: ComplexArray, half_width: int, real: BoolArray) -> ComplexArray:

@@ -14,6 +14,7 @@ from identification.comparison.clock import Turned, clock_of, turned
 from identification.comparison.disturbance import find_disturbances, without
 from identification.comparison.free_record import of_record
 from identification.comparison.noise import NoiseOfMean, noise_of_mean
+from identification.comparison.scatter import scatter_with_rate
 from identification.comparison.wandering import (
     left_in_mean,
     slow_trend,
@@ -44,8 +45,9 @@ def gather(
     """Batches of the experiments, those on the same grid together, in the order in which the grids first occur.
 
     Periodic records give their mean spectrum at all lines of the period, excited or not, with the variance from how
-    the periods differ, pooled over fifteen lines, slow trends and sine waves between the lines taken off; other
-    records all their lines with an unknown transient, weighted once they are settled under a model
+    the periods differ, pooled over fifteen lines, slow trends and sine waves between the lines taken off; where the
+    level of at least half of the records does not stay, that of the others is taken for a walk too small to be seen;
+    other records all their lines with an unknown transient, weighted once they are settled under a model
     (`identification.extension.settle`). `mean_value` keeps the line at ω = 0 of periodic records. `logged`: for each
     experiment the quantities written down beside the scheduling variables; those of all are kept.
     """
@@ -54,6 +56,12 @@ def gather(
     check_changing(experiments)
     clock = clock_of(experiments)
     parts = [_one(m, data, mean_value, clock) for m, data in enumerate(experiments)]
+    unsteady = [any(text in (SLOW, WALKS) for _, text in part.notes) for part in parts]
+    if 2 * sum(unsteady) >= sum(part.signals is not None for part in parts) and any(unsteady):
+        parts = [
+            part if seen or part.signals is None else _one(m, experiments[m], mean_value, clock, wandering=True)
+            for m, (part, seen) in enumerate(zip(parts, unsteady, strict=True))
+        ]
     if logged:
         parts = _with_logged(parts, logged)
     groups: dict[object, list[Batch]] = {}
@@ -102,7 +110,7 @@ def _joined(group: list[Batch]) -> Batch:
     }
     stated: dict[str, Any] = {
         name: None if getattr(first, name) is None else np.concatenate([getattr(part, name) for part in group])
-        for name in ("signals", "ends", "transients", "begun", "parts")
+        for name in ("signals", "ends", "transients", "begun", "parts", "scatter")
     }
     nuisances = [part.nuisance for part in group if part.nuisance is not None]
     between = tuple(b for part in group for b in part.between)
@@ -138,12 +146,12 @@ def _padded(signals: Sequence[FloatArray]) -> FloatArray:
     return np.concatenate([np.pad(one, ((0, 0), (0, most - one.shape[1]), (0, 0))) for one in signals])
 
 
-def _one(m: int, data: Measurement, mean_value: bool, clock: float) -> Batch:
+def _one(m: int, data: Measurement, mean_value: bool, clock: float, wandering: bool = False) -> Batch:
     if isinstance(data, FrequencyResponse):
         return _of_response(m, data)
     if data.period is None or data.period_count < 2:
         return of_record(m, data)
-    return _of_periodic(m, data, mean_value, clock)
+    return _of_periodic(m, data, mean_value, clock, wandering)
 
 
 def _of_response(m: int, data: FrequencyResponse) -> Batch:
@@ -179,7 +187,7 @@ def _of_response(m: int, data: FrequencyResponse) -> Batch:
     )
 
 
-def _of_periodic(m: int, record: TimeRecord, mean_value: bool, clock: float) -> Batch:
+def _of_periodic(m: int, record: TimeRecord, mean_value: bool, clock: float, wandering: bool) -> Batch:
     period = record.period
     assert period is not None
     drift = turned(record, clock) if clock else Turned(np.zeros(period), np.zeros(len(record)), 0.0)
@@ -189,7 +197,7 @@ def _of_periodic(m: int, record: TimeRecord, mean_value: bool, clock: float) -> 
     count = steady_count(level, trend is None and wanders(level, record.period_count))
     disturbances = find_disturbances(level, count)
     clean = without(level, disturbances)
-    walks = trend is None and wanders(clean, count)
+    walks = trend is None and (wandering or wanders(clean, count))
     estimator = PeriodicAverage(drop_periods=record.period_count - count)
     u, y = (spectra / period for spectra in estimator.steady_spectra(clean))
     omega = np.asarray(2 * np.pi * np.fft.rfftfreq(period, record.sample_time), dtype=np.float64)
@@ -225,6 +233,7 @@ def _of_periodic(m: int, record: TimeRecord, mean_value: bool, clock: float) -> 
         nuisance=left_in_mean(period, 0 if trend is None else trend.degree, count, walks)[None],
         slopes=_slopes(np.where(excited, y - _between(u, y, excited) * u, y))[None],
         drift=drift.skew,
+        scatter=_scatter(y, noise.variance, record)[None],
         between=(between_harmonics(level, count),),
         disturbances=(disturbances,),
         channels=record.channels,
@@ -237,6 +246,13 @@ def _of_periodic(m: int, record: TimeRecord, mean_value: bool, clock: float) -> 
         averaged=count,
         parts=_parts(shown)[None] if clock and both is None else None,
     )
+
+
+def _scatter(y: ComplexArray, noise: FloatArray, record: TimeRecord) -> FloatArray:
+    """`scatter_with_rate`; of a period of an odd number of samples nothing is said."""
+    assert record.period is not None
+    even = record.period % 2 == 0 and bool(np.all(np.isfinite(noise[1:])))
+    return scatter_with_rate(y, noise, record.sample_time) if even else np.array([0.0, np.inf])
 
 
 def _parts(spectra: ComplexArray) -> ComplexArray:

@@ -138,7 +138,7 @@ def diagnose(
     missing = bool(ordered) and ordered[0].adjusted_p < LEVEL and before.share > material
     listed = refit_short_list(base, ordered if missing else (), origin=model)
     found = variations(base, np.random.default_rng(seed)) if rows.scaled and not cannot else ()
-    drifting = any(one.p_value < STRICT and one.effect.of_periods for one in found)
+    drifting = any(one.p_value < STRICT and one.effect.of_periods and one.gain > 0 for one in found)
     announced = () if cannot else tuple(one for one in _announced(listed) if not (drifting and one.misplaced))
     after = _rest("remaining lack of fit", announced[0].fit, seed) if announced else before
     varying = _instead(model, base, before, listed.evidence if announced or not before.acceptable else (), found)
@@ -175,11 +175,13 @@ def _instead(
 
     −2 ln L with its variance, ln R for its size and 2 ln(variants) are held against the BIC of the others. A parameter
     that was seen to drift within the records is elsewhere in each by as much, and comes before a misplaced point.
+    What scatters with the rate of the output is not called a power that all lines share.
     """
     if before.acceptable and not evidence:
         return None
+    scattering = any(one.p_value < STRICT and one.gain == 0 for one in found)
     for one in sorted(found, key=lambda each: -each.gain):
-        if one.p_value >= STRICT:
+        if one.p_value >= STRICT or one.gain == 0 or (scattering and one.effect.power(base.flows[0]) is not None):
             continue
         rivals = [each for each in evidence if not (one.effect.of_periods and each.misplaced)]
         varying, left, bic = _scattered(base, one, before) or _spread(model, base, one, before)

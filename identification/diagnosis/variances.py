@@ -27,7 +27,8 @@ BANDS = 6
 class Variation:
     """An effect on the variance with its size τ̂ (restricted likelihood) and the p-value of its score test.
 
-    `gain`: by how much −2 ln L falls; `variants`: how many were tried.
+    `gain`: by how much −2 ln L falls, zero where the records tell of it without a model; `variants`: how
+    many were tried.
     """
 
     effect: VarianceEffect
@@ -50,6 +51,8 @@ def variations(found: Fit, generator: np.random.Generator) -> tuple[Variation, .
 
 
 def _best(found: Fit, effect: VarianceEffect, generator: np.random.Generator) -> Variation | None:
+    if (direct := effect.seen(found.flows)) is not None:
+        return Variation(effect, *direct, 0.0, 1)
     rows = _slopes(found) if effect.of_periods else found.residual
     if rows is None or (effect.within_points and not _repeated(found.rows.batches)):
         return None

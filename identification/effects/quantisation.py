@@ -24,8 +24,8 @@ class Quantisation(VarianceEffect):
     advice: ClassVar[str] = "use a finer range of the converter, or a larger input"
 
     def variants(self, flow: Flow) -> list[Self]:
-        """Itself."""
-        return [self]
+        """Itself, where the input repeats: noise on an input is not told from it, nor is noise from its own rest."""
+        return [self] if flow.batch.adaptation is None else []
 
     def power(self, flow: Flow) -> FloatArray:
         """1/(12 L), at real lines twice that."""

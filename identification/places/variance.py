@@ -1,6 +1,7 @@
 """Effects that change the variance of what is measured, not its mean."""
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import ClassVar, Self
 
@@ -36,6 +37,10 @@ class VarianceEffect(ABC):
     @abstractmethod
     def variants(self, flow: Flow) -> list[Self]:
         """The effect over its further parameters."""
+
+    def seen(self, flows: Sequence[Flow]) -> tuple[float, float] | None:
+        """τ̂ and its p-value where the records tell them without a model; None where they do not."""
+        return None
 
     def change(self, flow: Flow) -> ComplexArray | None:
         """s (M, K), the change of the output of every record by τ = 1; None where it is not of this kind."""

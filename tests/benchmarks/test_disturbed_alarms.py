@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from benchmarks.disturbed_alarms import CONDITIONS, OMEGA, one, record, response, study
+from benchmarks.disturbed_alarms import CONDITIONS, OMEGA, STEP, one, record, response, study
 
 
 def test_the_plant_of_the_study_answers_as_its_equation_says():
@@ -15,18 +15,20 @@ def test_the_plant_of_the_study_answers_as_its_equation_says():
     assert noise == pytest.approx(0.01 * np.std(y), rel=0.1)
 
 
-@pytest.mark.parametrize("condition", [name for name in CONDITIONS if name != "input noise"])
+@pytest.mark.parametrize("condition", list(CONDITIONS))
 def test_hardly_anything_is_announced_and_nothing_with_confidence(condition):
     found = [one(condition, seed) for seed in (1, 2, 3)]
     assert sum(bool(d.announced) or d.variation is not None for d in found) <= 1
     assert not any(d.confident for d in found)
 
 
-def test_noise_on_the_input_gives_no_confidence():
-    """Its false alarms are more than one in twenty (docs/diagnosis.md); none is stated as certain by these."""
-    assert not any(one("input noise", seed).confident for seed in (1, 2, 3))
+def test_jitter_is_named_by_its_size_and_nothing_else_is():
+    for name in CONDITIONS:
+        kinds = [each.effect.kind for seed in (4, 5) for each in one(name, seed).variations]
+        assert kinds == (["jitter"] * 2 if name == "jitter" else []), name
+    (found,) = one("jitter", 6).variations
+    assert found.size == pytest.approx(0.05 * STEP, rel=0.2)
 
 
 def test_the_study_counts_what_was_announced():
-    (row,) = [row for name, row in study(1).items() if name == "hum"]
-    assert row == {"runs": 1, "announced": 0, "kinds": [], "verdicts": {"nothing missing": 1}}
+    assert study(1, ["hum"])["hum"] == {"runs": 1, "announced": 0, "kinds": [], "verdicts": {"nothing missing": 1}}

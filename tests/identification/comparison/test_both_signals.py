@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
+from identification.comparison.both_signals import _noise
 from identification.comparison.gather import gather
+from identification.comparison.noise import noise_of_mean
 from identification.diagnosis.diagnose import diagnose, rows_of
 from identification.effects.coulomb_friction import CoulombFriction
 from identification.effects.cubic_stiffness import CubicStiffness
@@ -101,3 +103,29 @@ def test_lines_without_excitation_do_not_pass_as_excited():
     (batch,) = gather(in_a_loop(4, 0.1, 0.8, lines=20))
     assert np.all(batch.classes[:, 20:] != 0)
     assert np.all(batch.classes[:, 1:20] == 0)
+
+
+def test_noise_on_the_input_of_a_resonant_plant_is_sized_line_by_line():
+    """Var(Y − G U) = σ_y² + |G|² σ_u² has the peak of the plant, which no window of lines and no low order follows."""
+    omega = 2 * np.pi * np.arange(129) / (256 * 0.05)
+    response = 1 / (90 - omega**2 + 1.2j * omega)
+    ratios = []
+    for seed in range(12):
+        g = np.random.default_rng(seed)
+        noise_u, noise_y = (s * g.standard_normal((4, 256)) for s in (0.3, 0.002))
+        u, y = (np.fft.rfft(x) / 256 for x in (noise_u, noise_y))
+        found = _noise(y - response * u, response, (omega == 0) | (np.arange(129) == 128), noise_of_mean)
+        ratios.append(found.variance[1:-1] * 4 * 256 / (0.002**2 + abs(response[1:-1]) ** 2 * 0.3**2))
+    mean = np.mean(ratios, axis=0)
+    assert np.all(abs(mean - 1) < 0.25)
+    assert np.mean(mean) == pytest.approx(1, abs=0.05)
+
+
+def test_noise_that_has_nothing_to_do_with_the_input_is_pooled_as_it_was():
+    g = np.random.default_rng(3)
+    response = 1 / (90 - np.linspace(0, 30, 129) ** 2 + 5j)
+    errors = np.fft.rfft(g.standard_normal((6, 256))) / 256
+    real = np.arange(129) % 128 == 0
+    np.testing.assert_allclose(
+        _noise(errors, response, real, noise_of_mean).variance, noise_of_mean(errors, real).variance
+    )

@@ -87,3 +87,20 @@ def test_a_walking_sensor_on_a_right_model_fails_no_test():
         assert found.notes
         assert {text for _, text in found.notes} <= {WALKS, SLOW}
     assert np.mean(np.array(p) < 0.05) < 0.2
+
+
+def test_where_most_levels_walk_no_mean_value_is_compared():
+    """A walk too small to be seen in one record would be called an offset there."""
+    g = np.random.default_rng(4)
+    lines = np.exp(2j * np.pi * g.random((4, 65)))
+    lines[:, 0] = 0
+    u = [np.tile(np.fft.irfft(one, n=128), 4) for one in lines]
+    steps = [0.05, 0.05, 0.05, 0.00002]
+    records = [
+        TimeRecord(one, one + 0.01 * g.standard_normal(512) + s * np.cumsum(g.standard_normal(512)), 0.1, (p,), 128)
+        for one, s, p in zip(u, steps, (0.0, 0.3, 0.6, 1.0), strict=True)
+    ]
+    every = gather(records)
+    assert all(np.all(np.isinf(batch.variances[:, 0])) for batch in every)
+    alone = gather(records[3:])[0]
+    assert np.isfinite(alone.variances[0, 0])

@@ -147,6 +147,6 @@ def test_rounding_that_later_filtering_hides_is_named():
 
 def test_they_are_no_effects_on_the_mean():
     kinds = {one.kind for one in variance_library()}
-    assert kinds == {"quantisation", "record_variation", "drifting_parameter"}
+    assert kinds == {"quantisation", "record_variation", "drifting_parameter", "jitter"}
     assert not kinds & {one.kind for one in library()}
     assert len(OMEGA) > 5
