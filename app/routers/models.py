@@ -7,19 +7,19 @@ from fastapi import APIRouter, Query, Response
 from app.dependencies import ContainerDependency, Cursor, IdempotencyKey, Limit, ResourcesDependency
 from app.routers.downloads import file_answer, file_response
 from app.schemas.extensions import ExtensionRequest
+from app.schemas.identification import IdentificationRequest
 from app.schemas.jobs import Job
-from app.schemas.models import Model, ModelFrequencyResponse, ModelList, ModelRequest, StatedModelRequest
+from app.schemas.models import Model, ModelFrequencyResponse, ModelList, StatedModelRequest
 from app.schemas.simulations import SimulationRequest
 from app.schemas.state_space import StateSpaceModelRequest
 from app.schemas.varying import VaryingModelRequest
 from app.services import (
     extensions,
+    identification,
     model_files,
     model_responses,
     models,
     simulations,
-    state_space_models,
-    varying_models,
 )
 from app.services.jobs import accepted
 from identification.exports import exports
@@ -31,26 +31,26 @@ Finite = Annotated[float, Query(allow_inf_nan=False)]
 
 @router.post("", status_code=202)
 def create_model(
-    body: ModelRequest, container: ContainerDependency, response: Response, key: IdempotencyKey = None
+    body: IdentificationRequest, container: ContainerDependency, response: Response, key: IdempotencyKey = None
 ) -> Job:
-    """Identify a model from experiments."""
-    return accepted(models.submit(container, body, key), response)
+    """Identify a model from experiments: rational, in state space, or from a record along varying scheduling."""
+    return accepted(identification.submit(container, body, key), response)
 
 
-@router.post("/state-space", status_code=202)
+@router.post("/state-space", status_code=202, deprecated=True)
 def create_state_space_model(
     body: StateSpaceModelRequest, container: ContainerDependency, response: Response, key: IdempotencyKey = None
 ) -> Job:
-    """Identify a state-space model from frequency responses, also with several inputs and outputs."""
-    return accepted(state_space_models.submit(container, body, key), response)
+    """The kind `stateSpace` of `POST /v1/models`, which answers the same."""
+    return accepted(identification.submit(container, IdentificationRequest(body), key), response)
 
 
-@router.post("/varying", status_code=202)
+@router.post("/varying", status_code=202, deprecated=True)
 def create_varying_model(
     body: VaryingModelRequest, container: ContainerDependency, response: Response, key: IdempotencyKey = None
 ) -> Job:
-    """Identify an affine state-space model from one experiment in which the scheduling varies."""
-    return accepted(varying_models.submit(container, body, key), response)
+    """The kind `varyingScheduling` of `POST /v1/models`, which answers the same."""
+    return accepted(identification.submit(container, IdentificationRequest(body), key), response)
 
 
 @router.post("/stated", status_code=201)

@@ -6,6 +6,7 @@ from pydantic import Field
 
 from app.schemas.common import CamelModel, Double, Integer
 from app.schemas.diagnoses import Domain
+from app.schemas.experiments import ExperimentKind
 
 
 class CatalogueOption(CamelModel):
@@ -23,6 +24,19 @@ class CatalogueEntry(CamelModel):
     kind: str = Field(description="what to give as `kind`")
     description: str
     options: list[CatalogueOption]
+
+
+class MethodEntry(CamelModel):
+    """A way from experiments to a model, and what it takes."""
+
+    kind: str
+    description: str
+    request_kind: Literal["rational", "stateSpace", "varyingScheduling"] = Field(
+        description="the kind of `POST /v1/models` that asks for it"
+    )
+    experiments: list[ExperimentKind] = Field(description="the kinds of experiments that it takes")
+    structures: list[str] = Field(description="the time domains of the structures that it takes")
+    takes_prior: bool = Field(description="whether the information of an earlier model can be added")
 
 
 class EffectParameterEntry(CamelModel):
@@ -56,6 +70,7 @@ class Catalogue(CamelModel):
     """All estimators, targets, spectrum families, basis functions and physical effects of this service."""
 
     software_version: str
+    methods: list[MethodEntry] = Field(description="ways from experiments to models, with what they take")
     bases: list[CatalogueEntry] = Field(description="functions of one scheduling variable")
     spectral_estimators: list[CatalogueEntry] = Field(description="records to frequency responses")
     local_estimators: list[CatalogueEntry] = Field(description="models of one operating point")

@@ -19,13 +19,15 @@ from app.schemas.plants import (
     Structure,
     Text,
 )
+from app.schemas.requests import KindRequest
 from app.schemas.state_space import StateSpaceResult
 from app.schemas.varying import VaryingResult
 
 
-class ModelRequest(CamelModel):
-    """Which experiments to identify a model from, and how."""
+class ModelRequest(KindRequest):
+    """Which experiments to identify a rational model, also in physical form, from, and how."""
 
+    kind: Literal["rational"]
     plant_id: Identifier
     name: Text = ""
     description: LongText = ""

@@ -10,11 +10,13 @@ from app.schemas.experiments import Identifier
 from app.schemas.families import ParametricEstimator, Refinement, SpectralEstimator, SubspaceEstimator
 from app.schemas.outcomes import OutcomeDocument, PolesAtPoint
 from app.schemas.plants import CoefficientBasis, LongText, ProductBasisDocument, StateSpaceStructureDocument, Text
+from app.schemas.requests import KindRequest
 
 
-class StateSpaceModelRequest(CamelModel):
+class StateSpaceModelRequest(KindRequest):
     """Which experiments to identify state-space models from: one an operating point, one over the range, or both."""
 
+    kind: Literal["stateSpace"]
     plant_id: Identifier
     name: Text = ""
     description: LongText = ""

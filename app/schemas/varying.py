@@ -9,11 +9,13 @@ from app.schemas.common import CamelModel, Double, Integer
 from app.schemas.experiments import Identifier
 from app.schemas.families import VaryingEstimator, VaryingRefinement
 from app.schemas.plants import DiscreteStateSpaceStructure, LongText, ProductBasisDocument, Text
+from app.schemas.requests import KindRequest
 
 
-class VaryingModelRequest(CamelModel):
+class VaryingModelRequest(KindRequest):
     """Which record along varying scheduling to identify a state-space model from, and how."""
 
+    kind: Literal["varyingScheduling"]
     plant_id: Identifier
     name: Text = ""
     description: LongText = ""

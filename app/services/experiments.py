@@ -31,8 +31,8 @@ VARYING_POINTERS = {
     "period": "/periodSamples",
 }
 VARIED = (
-    "the scheduling varied in this experiment; what it says is found with POST /v1/models/varying, here experiments"
-    " at operating points that were held still are needed"
+    "the scheduling varied in this experiment; what it says is found with the kind varyingScheduling of POST"
+    " /v1/models, here experiments at operating points that were held still are needed"
 )
 Arrays = dict[str, NDArray[Any]]
 ARRAYS_OF_BODY = {

@@ -26,7 +26,7 @@ from identification.models.model import Model
 from identification.models.physical import RationalForm
 
 KIND = "models"
-STATE_SPACE = "the plant has a state-space structure; its models are identified with POST /v1/models/state-space"
+STATE_SPACE = "the plant has a state-space structure; identify its models with kind stateSpace of POST /v1/models"
 STATED_POINTERS = {"theta": "/theta", "covariance": "/covariance"}
 
 
@@ -40,7 +40,7 @@ def submit(container: Container, request: ModelRequest, key: str | None) -> JobR
         row = named(resources, KIND, request.prior_model_id, "/priorModelId")
         prior = model_of(of_plant(row, plant.id, "/priorModelId"))
     task = payload(plant, request, [(experiment_of(row), row.arrays or "") for row in rows], prior)
-    mark = fingerprint("createModel", request.model_dump(mode="json"))
+    mark = fingerprint("createModel", request.asked())
     return container.ledger.submit("identification", task, KIND, plant.id, key, mark)
 
 

@@ -33,7 +33,7 @@ def submit(container: Container, request: StateSpaceModelRequest, key: str | Non
     plant = plant_of(named(resources, "plants", request.plant_id, "/plantId"))
     rows = local_experiments(resources, request.experiment_ids, plant.id, "/experimentIds")
     task = payload(plant, request, [(experiment_of(row), row.arrays or "") for row in rows])
-    mark = fingerprint("createStateSpaceModel", request.model_dump(mode="json"))
+    mark = fingerprint("createStateSpaceModel", request.asked())
     return container.ledger.submit(TASK, task, KIND, plant.id, key, mark)
 
 

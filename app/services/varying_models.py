@@ -37,7 +37,7 @@ def submit(container: Container, request: VaryingModelRequest, key: str | None) 
     held_out = named_of_plant(resources, "experiments", wanted[1:], plant.id, "/heldOutExperimentIds")
     experiments = [(experiment_of(row), row.arrays or "") for row in (fitted, *held_out)]
     task = payload(plant, request, experiments[0], experiments[1:])
-    sent = {name: value for name, value in request.model_dump(mode="json").items() if (name, value) != ("basis", None)}
+    sent = {name: value for name, value in request.asked().items() if (name, value) != ("basis", None)}
     mark = fingerprint("createVaryingModel", sent)
     return container.ledger.submit(TASK, task, KIND, plant.id, key, mark)
 
@@ -74,6 +74,6 @@ def _check(experiment: Experiment, sample_time: float, pointer: str) -> None:
         raise UnprocessableError.at(
             pointer,
             "the operating point was held still in this experiment; give a record along varying scheduling, or identify"
-            " with POST /v1/models or /v1/models/state-space",
+            " with another kind of POST /v1/models",
         )
     check_sample_time(experiment, sample_time, pointer)

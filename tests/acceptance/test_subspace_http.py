@@ -68,7 +68,7 @@ def uploaded(api: Api, plant: Json, point: float, name: str, content: bytes, **f
 
 
 def identified(api: Api, plant: Json, experiments: list[str], **options: Any) -> Json:
-    return api.made("/models/state-space", {"plantId": plant["id"], "experimentIds": experiments, **options})
+    return api.made("/models", {"kind": "stateSpace", "plantId": plant["id"], "experimentIds": experiments, **options})
 
 
 def response_of(api: Api, model: Json, point: float, **channel: int) -> tuple[np.ndarray, np.ndarray, Json]:
@@ -228,7 +228,7 @@ def test_requests_for_the_other_sort_of_model_say_where_to_go(api: Api, plant: J
     estimators = {"localEstimator": {"kind": "rational_fit"}, "lpvEstimator": {"kind": "generalised_least_squares"}}
     problem = api.refused("/models", {"plantId": plant["id"], "experimentIds": exact, **estimators})
     assert pointers(problem) == ["/plantId"]
-    assert "/v1/models/state-space" in problem["detail"]
+    assert "stateSpace" in problem["detail"]
     stated = {"plantId": plant["id"], "theta": [1.0], "noiseVariance": 1.0}
     assert pointers(api.refused("/models/stated", stated)) == ["/plantId"]
     model = identified(api, plant, exact, parametricEstimator=PARAMETRIC)

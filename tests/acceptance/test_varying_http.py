@@ -37,7 +37,7 @@ def model(api: Api, plant: Json, records: list[str]) -> Json:
 
 def identified(api: Api, plant: Json, records: list[str], estimator: Json, **more: object) -> Json:
     request = {"plantId": plant["id"], "experimentId": records[0], "heldOutExperimentIds": records[1:]}
-    return api.made("/models/varying", {**request, "estimator": estimator, **more})
+    return api.made("/models", {"kind": "varyingScheduling", **request, "estimator": estimator, **more})
 
 
 def test_what_was_understood_of_a_record_is_said(api: Api, records: list[str]) -> None:

@@ -65,6 +65,7 @@ def test_a_model_with_a_pole_region_comes_back_as_typed_documents(
     m = call.m
     parts = [m.DiscRegion(kind="disc", radius=0.95), m.StripRegion(kind="strip", half_height=0.9)]
     body = m.StateSpaceModelRequest(
+        kind="stateSpace",
         plant_id=plant.id,
         experiment_ids=experiments,
         subspace_estimator=m.FrequencySubspaceEstimator(kind="frequency_subspace"),
@@ -72,7 +73,7 @@ def test_a_model_with_a_pole_region_comes_back_as_typed_documents(
             kind="parametric_subspace", region=m.IntersectionRegion(kind="intersection", regions=parts)
         ),
     )
-    model = call("models", "get_model", call.finished(call("models", "create_state_space_model", body=body)))
+    model = call("models", "get_model", call.finished(call("models", "create_model", body=body)))
     found = model.state_space
     assert isinstance(found.parametric_estimator.region.regions[1], m.StripRegion)
     assert found.pole_guarantee.guaranteed == "wholeRange"

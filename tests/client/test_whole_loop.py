@@ -88,6 +88,7 @@ def experiments(call: Caller, design: Any, records: list[tuple[float, FloatArray
 def model(call: Caller, plant: Any, experiments: list[Any]) -> Any:
     m = call.m
     body = m.ModelRequest(
+        kind="rational",
         plant_id=plant.id,
         experiment_ids=[experiment.id for experiment in experiments],
         local_estimator=m.PredictionErrorEstimator(kind="prediction_error"),

@@ -20,7 +20,7 @@ page(async () => {
   const [described, catalogue, all, models] = await Promise.all([plant, get("/catalogue"), list("/experiments", query), list("/models", query, 100)]);
   const experiments = all.filter((one) => ["timeRecord", "frequencyResponse"].includes(one.kind));
   if (described.structure.timeDomain.endsWith("StateSpace")) {
-    replace(byId("form"), message("", h("p", {}, "Models in state space are identified over ", h("a", { href: "/v1/openapi.json" }, "the interface"), ", with POST /v1/models/state-space.")));
+    replace(byId("form"), message("", h("p", {}, "Models in state space are identified over ", h("a", { href: "/v1/openapi.json" }, "the interface"), ", with the kind stateSpace of POST /v1/models.")));
   } else if (!experiments.length) {
     replace(byId("form"), message("", h("p", {}, "There is no experiment to fit a model to. ", h("a", { href: at("experiments") }, "Bring one in first."))));
   } else {
@@ -49,7 +49,7 @@ class IdentificationForm {
   async #submit() {
     const fitted = this.roles.of("fitted");
     const body = {
-      plantId: context.plantId, name: this.name.value.trim(), experimentIds: fitted, ...this.estimators.value(), ...this.override.value(),
+      kind: "rational", plantId: context.plantId, name: this.name.value.trim(), experimentIds: fitted, ...this.estimators.value(), ...this.override.value(),
       priorModelId: this.prior.value || null,
     };
     try {
