@@ -6,24 +6,22 @@ from benchmarks.cases.reading import HeldOut
 from identification.arrays import ComplexArray, FloatArray
 from identification.extension.as_recorded import as_recorded
 from identification.extension.response import linear_response
-from identification.extension.steady_period import steady_period
+from identification.extension.steady_period import record_from_rest, steady_period
 from identification.models.model import Model
-
-RELEASE = 1
 
 
 def predicted(model: Model, one: HeldOut) -> FloatArray | ComplexArray:
     """The output (samples,), or the response (F,) at the frequencies of the experiment.
 
-    An input that repeats itself is answered by the steady output. One that does not is followed by as many zeros as it
-    has samples and then taken as a period: the response from rest, as far as the plant settles in that time.
+    An input that repeats itself is answered by the steady output, one that does not by the response from rest.
     """
     if one.frequencies is not None:
         return linear_response(model, [one.point], one.frequencies).response[0]
     assert one.input is not None
     if one.period is None:
-        played = np.concatenate([one.input, np.zeros(RELEASE * len(one.input))])
-        return _recorded(model, one, _steady(model, one, played))
+        hold = one.hold or "band"
+        found = record_from_rest(model, one.input, one.sample_time, one.point, one.logged, hold)
+        return _recorded(model, one, found)
     return _recorded(model, one, _steady(model, one, _one_period(one.input, one.period)))
 
 

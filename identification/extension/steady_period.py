@@ -84,6 +84,30 @@ def steady_period(
     return SteadyPeriod(np.array(outputs), np.array(known) if len(known) == len(outputs) else None, left_out)
 
 
+def record_from_rest(
+    model: Model,
+    input: ArrayLike,
+    sample_time: float,
+    point: ArrayLike,
+    logged: Mapping[str, float] | None = None,
+    hold: Hold = "band",
+) -> FloatArray:
+    """The output (N,) from rest at one operating point (s,) for an input u (N,) that does not repeat.
+
+    As many zeros follow it as it has samples, in which what acts linearly must settle; forces that effects feed back
+    are followed in time, whether or not their motion would repeat. Otherwise as `steady_period`, whose errors it
+    raises.
+    """
+    u = finite_floats(input, "input")
+    kept, _ = _held(model, logged or {}, False)
+    p = kept.dependence.points(np.atleast_2d(point))[0]
+    batch = batch_of_period(kept, np.concatenate([u, np.zeros(len(u))]), sample_time, p, logged or {}, hold)
+    flow = kept.from_rest(batch)
+    where = f"at the operating point ({', '.join(f'{value:g}' for value in p)})"
+    _require_stable(kept, flow, where)
+    return _samples(batch, flow.output, 2 * len(u))[: len(u)]
+
+
 def batch_of_period(
     model: Model,
     input: ArrayLike,
@@ -172,16 +196,20 @@ def _settled(model: Model, batch: Batch, point: FloatArray) -> Flow:
             " effects are too strong for this input; play it at another level",
             "input",
         )
+    _require_stable(model, flow, where)
+    _require_mean_known(model, flow, where)
+    return flow
+
+
+def _require_stable(model: Model, flow: Flow, where: str) -> None:
     structure = model.structure
     poles = structure.poles(flow.setting.zeta)
     if not np.all(abs(poles) < 1 if structure.is_discrete else poles.real < 0):
         raise NoSteadyStateError(
             f"{where} the plant of the model is unstable, so there is no steady state", "operating_points"
         )
-    _require_mean_known(model, flow, where)
     if not np.all(np.isfinite(flow.output)):
         raise RangeError(f"{where} the output leaves the range of numbers; choose other units", "input")
-    return flow
 
 
 def _require_mean_known(model: Model, flow: Flow, where: str) -> None:

@@ -14,7 +14,7 @@ from identification.models.physical import RationalForm
 from identification.models.structure import Structure
 from identification.places.place import Flow, Setting
 from identification.places.placed import PlacedEffect
-from identification.places.simulate import Acting, followed, simulate
+from identification.places.simulate import Acting, followed, from_rest, simulate
 from identification.scheduling import ParameterDependence, SchedulingVariable
 from identification.signals import OperatingPoint
 
@@ -181,6 +181,11 @@ class Model:
             return self.follow(batch, batch.followed)
         setting = self.setting(batch.points)
         return simulate(setting, self._acting(setting, batch), batch, start)
+
+    def from_rest(self, batch: Batch) -> Flow:
+        """The signals from rest for an input in their first half; see `identification.places.simulate.from_rest`."""
+        setting = self.setting(batch.points)
+        return from_rest(setting, self._acting(setting, batch), batch)
 
     def follow(self, batch: Batch, measured: ComplexArray) -> Flow:
         """The signals of a batch with the motion taken from the measured output (M, K)."""

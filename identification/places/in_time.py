@@ -19,8 +19,8 @@ class PlantsInTime:
     """ẇ = A w + B u, (q, q̇) = C w + D u for the M plants of a batch on a grid of steps h.
 
     `generator` A, `transition` exp(A h) (n, n, M), `entry` B (n, M), `motion` C (2, n, M), `direct` D (2, M). Outputs
-    of order d ≥ 1 are integrated to the displacement. All states leak a hundredth of themselves over the grid, so that
-    those that would stay are those of a period as well.
+    of order d ≥ 1 are integrated to the displacement. States that would stay, and these integrators, leak a hundredth
+    of themselves over the grid, so that they are those of a period as well.
     """
 
     generator: FloatArray
@@ -29,6 +29,14 @@ class PlantsInTime:
     motion: FloatArray
     direct: FloatArray
     step: float
+
+    def held(self, share: float) -> tuple[FloatArray, FloatArray]:
+        """exp(A h') (n, n, M) and ∫ exp(A s) ds B (n, M) over a `share` h' of a step."""
+        n, m = self.entry.shape
+        full = np.zeros((m, n + 1, n + 1))
+        full[:, :n, :n], full[:, :n, n] = np.moveaxis(self.generator, -1, 0), self.entry.T
+        found = np.moveaxis(expm(full * (share * self.step)), 0, -1)
+        return found[:n, :n], found[:n, n]
 
     @property
     def of_rates(self) -> "PlantsInTime":
@@ -75,7 +83,8 @@ def _in_time(
     for i in range(order):
         a[n + i], b[n + i] = carried[-1], 0.0 if i else direct
         carried.append(np.eye(n + order)[n + i])
-    a -= leak * np.eye(n + order)
+    staying = bool(np.any(abs(np.linalg.eigvals(a[:n, :n])) < leak))
+    a -= leak * np.diag(np.arange(n + order) >= (0 if staying else n))
     flow = carried[-2] if order else carried[-1] @ a
     at_once = float(carried[-1] @ b) if not order else direct if order == 1 else 0.0
     return a, expm(a * step), b, np.stack([carried[-1], flow]), np.array([0.0, at_once])

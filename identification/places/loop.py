@@ -81,12 +81,15 @@ class Loop:
         """q and q̇ (M, L·finer) without forces."""
         return self.motion(self.forces[0][0], self.start(self.driven), np.zeros_like(self.driven))
 
-    def of_force(self, force: FloatArray) -> ComplexArray:
-        """The unknowns for a force (M, L·finer) in time."""
+    def lines_of(self, force: FloatArray) -> ComplexArray:
+        """F (M, K) of a force (M, L·finer) in time."""
         held = self.finer if self.between is not None else 1
         kept = force if held == 1 else force.reshape(len(force), -1, held).mean(axis=-1)
-        lines = self.forces[0][0].rates(self.batch) * self.batch.spectrum(kept)
-        return self.balanced(self.start(self.answer(np.asarray(lines))))
+        return np.asarray(self.forces[0][0].rates(self.batch) * self.batch.spectrum(kept))
+
+    def of_force(self, force: FloatArray) -> ComplexArray:
+        """The unknowns for a force (M, L·finer) in time."""
+        return self.balanced(self.start(self.answer(self.lines_of(force))))
 
     def force_lines(self, x: ComplexArray) -> ComplexArray:
         """F (M, K) of all forces."""

@@ -14,10 +14,10 @@ def marched(loop: Loop, plants: PlantsInTime, free: tuple[FloatArray, FloatArray
 
     From rest, over so many `periods` at most, until what is at their end was there one before:
 
-        φ_k = Σ e f(q_k, q̇_k) with what φ_k itself changes,   w_{k+1} = e^{Ah} (w_k − h B φ_k)
+        φ_k = Σ e f(q_k, q̇_k),   (q, q̇)_k = free + C (e^{Ah/2} w_k − Γ(h/2) φ_k),   w_{k+1} = e^{Ah} w_k − Γ(h) φ_k
 
-    Each force is found with its own effect on the motion that it sees, so that friction holds what it can hold
-    [AcaryBrogliato2008].
+    with forces that keep their value over the step around each time of the grid, found with their own effect on the
+    motion in the middle of it, so that friction holds what it can hold [AcaryBrogliato2008].
     """
     states = np.zeros_like(plants.entry)
     found = np.zeros_like(free[0])
@@ -33,16 +33,16 @@ def _over_a_period(
     loop: Loop, plants: PlantsInTime, free: tuple[FloatArray, FloatArray], states: FloatArray, found: FloatArray
 ) -> FloatArray:
     """The states (n, M) after a period that begins with some; writes the force into `found` (M, N)."""
-    pushing = plants.step * plants.entry
-    by = np.einsum("cim,im->cm", plants.motion, pushing) + plants.direct
+    (half, half_pushed), (whole, pushed) = plants.held(0.5), plants.held(1.0)
+    by = np.einsum("cim,im->cm", plants.motion, half_pushed) + plants.direct
+    to_q, to_flow = np.einsum("cim,ijm->cjm", plants.motion, half)
     q_free, flow_free = (np.ascontiguousarray(one.T) for one in free)
-    to_q, to_flow = plants.motion
-    transition, forces = np.ascontiguousarray(plants.transition), [(effect, e[:, 0]) for effect, e in loop.forces]
+    transition, forces = np.ascontiguousarray(whole), [(effect, e[:, 0]) for effect, e in loop.forces]
     for k, (q, flow) in enumerate(zip(q_free, flow_free, strict=True)):
         q, flow = q + (to_q * states).sum(0), flow + (to_flow * states).sum(0)
         total = np.zeros_like(q)
         for effect, e in forces:
             total += effect.held_against(q - by[0] * total, flow - by[1] * total, e, by)
         found[:, k] = total
-        states = (transition * (states - pushing * total)).sum(1)
+        states = (transition * states).sum(1) - pushed * total
     return states

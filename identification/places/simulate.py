@@ -15,6 +15,7 @@ from identification.places.intersample import OFFSETS, Between, is_followed
 from identification.places.linear import Coefficient, Divisor
 from identification.places.linear_path import images, linear_path
 from identification.places.loop import Loop
+from identification.places.marching import marched
 from identification.places.motion import displacement, flow_rate
 from identification.places.nonlinear import Actuator, Added, Feedback, Sensor
 from identification.places.place import Effect, Flow, Setting, passing
@@ -46,6 +47,30 @@ def simulate(setting: Setting, acting: Sequence[Acting], batch: Batch, start: Fl
     force, mean = inner.force_lines(x)[:, : len(batch.omega)], inner.split(x)[1]
     core = loop.answer(force) + _reaction(setting, acting, batch)
     return _shown(setting, acting, loop, force, core, core, mean, Closing(inner, x, grid))
+
+
+def from_rest(setting: Setting, acting: Sequence[Acting], batch: Batch) -> Flow:
+    """The same for an input in the first half of the signals, from rest; in the second half it is zero.
+
+    Forces are followed in time from the first sample on (`marched`), and a steady state need not exist. They end with
+    the first half, so that the plant settles and nothing comes back at the start. Raises
+    MisuseError for plants without states, and for forces that remember.
+    """
+    if not any(isinstance(effect, Feedback) and not effect.driven for effect, _ in acting):
+        return simulate(setting, acting, batch)
+    loop, setting = _prepared(setting, acting, batch)
+    grid = fine_grid(loop, setting)
+    inner = loop if grid is None else grid.loop(loop, setting, acting)
+    if inner.plants is None or any(effect.remembers for effect, _ in loop.forces):
+        raise MisuseError(
+            "the forces of this model cannot be followed in time; simulate a period of its output", "effects"
+        )
+    with np.errstate(over="ignore", invalid="ignore"):
+        in_time = marched(inner, inner.plants, inner.free_motion)
+    in_time[:, in_time.shape[1] // 2 :] = 0.0
+    force = inner.lines_of(in_time)[:, : len(batch.omega)]
+    core = loop.answer(force) + _reaction(setting, acting, batch)
+    return _shown(setting, acting, loop, force, core, core, np.zeros(len(core)), None)
 
 
 def _steady(inner: Loop, start: Flow | None, grid: FineGrid | None) -> ComplexArray:

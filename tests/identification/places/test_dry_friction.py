@@ -8,7 +8,7 @@ from identification.bases.polynomial import Polynomial
 from identification.effects.asymmetric_friction import AsymmetricFriction
 from identification.effects.coulomb_friction import CoulombFriction
 from identification.effects.stribeck_friction import StribeckFriction
-from identification.extension.steady_period import steady_period
+from identification.extension.steady_period import record_from_rest, steady_period
 from identification.models.model import Model
 from identification.models.rational import RationalStructure
 from identification.places.placed import placed
@@ -52,3 +52,14 @@ def test_the_steady_state_is_the_one_that_is_reached(name, order, rms):
     found = steady_period(model(order, effect(order), e), played, SAMPLE_TIME, [[0.0]]).output[0]
     without = steady_period(model(order), played, SAMPLE_TIME, [[0.0]]).output[0]
     assert np.linalg.norm(found - wanted) < 5e-3 * np.linalg.norm(without - wanted)
+
+
+@pytest.mark.parametrize("name", ["coulomb", "asymmetric"])
+def test_a_record_that_does_not_repeat_is_followed_from_rest(name):
+    """Random steps held between the samples, with long rests in which friction holds the mass where it is."""
+    effect, e, law = LAWS[name]
+    u = np.repeat(np.random.default_rng(4).uniform(-12, 12, 16), 40)
+    wanted = followed(Plant(1.2, 9.0, 1500.0, law), u, SAMPLE_TIME)[0]
+    found = record_from_rest(model(0, effect(0), e), u, SAMPLE_TIME, [0.0], hold="zero")
+    without = record_from_rest(model(0), u, SAMPLE_TIME, [0.0], hold="zero")
+    assert np.linalg.norm(found - wanted) < 0.02 * np.linalg.norm(without - wanted)
