@@ -51,6 +51,11 @@ class Batch:
     The periods that are compared begin `begun` (M,) seconds after the start of the record, and `averaged` is how many
     they are. `drift`: the share by which the clock of the outputs was seen to run faster, zero where it was not;
     `parts` (M, P, K): each of the periods then, see `in_parts`. `scatter` (M, 2): see `scatter_with_rate`.
+
+    Of responses with several inputs and outputs each path is a row: `ports` (M, 2) its output and input, those of one
+    measurement one after the other, of `shape` n_y × n_u. `decoupling` (M/c, K, c, c) turns the c rows of a measurement
+    into such whose noise is uncorrelated, of the same variances; `coupled`: how many outputs one estimate of the
+    covariance holds.
     """
 
     points: FloatArray
@@ -87,6 +92,10 @@ class Batch:
     parts: ComplexArray | None = None
     drift: float = 0.0
     scatter: FloatArray | None = None
+    ports: IntArray | None = None
+    shape: tuple[int, int] = (1, 1)
+    decoupling: ComplexArray | None = None
+    coupled: int = 1
 
     @cached_property
     def real(self) -> BoolArray:
@@ -99,7 +108,7 @@ class Batch:
     @cached_property
     def weights(self) -> FloatArray:
         """√2/σ (M, K), less what the randomness of σ̂ adds to the mean of r²: E r² = 1."""
-        inflation = 1.0 if np.isinf(self.freedom) else self.freedom / (self.freedom - 2)
+        inflation = 1.0 if np.isinf(self.freedom) else self.freedom / (self.freedom - 2 * self.coupled)
         return np.sqrt(2 / (self.variances * inflation))
 
     @cached_property
@@ -194,11 +203,18 @@ class Batch:
         return self.whiten(spectra).reshape(*spectra.shape[:-1], -1)
 
     def _weighted(self, spectra: ComplexArray) -> FloatArray:
+        if self.decoupling is not None:
+            spectra = self._decoupled(spectra, self.decoupling)
         rows = np.empty((*spectra.shape[:-1], 2, spectra.shape[-1]))
         rows[..., 0, :] = spectra.real
         rows[..., 1, :] = spectra.imag
         rows *= self.weights_of_rows
         return rows.reshape(*spectra.shape[:-1], -1)
+
+    def _decoupled(self, spectra: ComplexArray, by: ComplexArray) -> ComplexArray:
+        count, lines, rows, _ = by.shape
+        each = np.moveaxis(spectra.reshape(*spectra.shape[:-2], count, rows, lines), -1, -2)
+        return np.moveaxis((by @ each[..., None])[..., 0], -1, -2).reshape(spectra.shape)
 
     @cached_property
     def _jumps(self) -> tuple[FloatArray, FloatArray] | None:

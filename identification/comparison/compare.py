@@ -22,6 +22,7 @@ from identification.lti.whiteness import orthonormal
 from identification.models.model import Model, require_matching
 from identification.outcome import TestResult
 from identification.places.place import Flow
+from identification.places.ports import Port
 
 BANDS = 6
 
@@ -30,7 +31,7 @@ BANDS = 6
 class MisfitMap:
     """Normalised residuals z (M, K) of one grid, E|z|² = 1 when nothing is missing; NaN-free: `compared` says where.
 
-    `points` (M, s), `frequencies` (K,) rad/s, `classes` (M, K) as in `identification.comparison.batch`.
+    `points` (M, s), `frequencies` (K,) rad/s, `classes` (M, K) and `ports` as in `identification.comparison.batch`.
     """
 
     points: FloatArray
@@ -40,6 +41,7 @@ class MisfitMap:
     classes: IntArray
     members: IntArray
     responses: ComparedResponses
+    ports: IntArray | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +52,8 @@ class Comparison:
     refit to these data would bring, None for held-out ones. `dependence` and `dynamics` split the lack of fit of such a
     refit: the first asks whether one LTI model per operating point would fit better than the dependence on p, the
     second whether even those do not fit. `notes`: what is to be said of measurements, by their place in the list.
-    `fit_percent` (experiments,) 100 (1 − ‖y − ŷ‖/‖y − ȳ‖) at the excited lines.
+    `fit_percent` (experiments,) 100 (1 − ‖y − ŷ‖/‖y − ȳ‖) at the excited lines. `by_path`: from each input to each
+    output, where there are several.
     """
 
     maps: tuple[MisfitMap, ...]
@@ -66,6 +69,7 @@ class Comparison:
     refitted: TestResult | None = None
     refit_percent: FloatArray | None = None
     notes: tuple[tuple[int, str], ...] = ()
+    by_path: tuple[TestResult, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,6 +139,7 @@ def compare(model: Model, batches: Sequence[Batch], fitted: bool = True) -> Comp
         refitted,
         brought,
         notes,
+        tuple(judge.test(name, chosen) for name, chosen in _paths(rows)),
     )
 
 
@@ -196,17 +201,18 @@ def _covariance(model: Model) -> FloatArray:
 def _map(batch: Batch, rows: FloatArray, flow: Flow) -> MisfitMap:
     compared, residual = np.isfinite(batch.variances), batch.complex_residual(rows)
     responses = compared_responses(batch, flow.output)
-    return MisfitMap(batch.points, batch.omega, residual, compared, batch.classes, batch.members, responses)
+    return MisfitMap(
+        batch.points, batch.omega, residual, compared, batch.classes, batch.members, responses, batch.ports
+    )
 
 
 def _fit_percent(batches: Sequence[Batch], flows: Sequence[Flow]) -> FloatArray:
-    percent = np.empty(sum(len(batch.members) for batch in batches))
+    error, size = np.zeros((2, 1 + max(int(batch.members.max()) for batch in batches)))
     for batch, flow in zip(batches, flows, strict=True):
         used = (batch.classes == EXCITED) & np.isfinite(batch.variances)
-        error = np.sum(abs(batch.outputs - flow.output) ** 2 * used, axis=1)
-        size = np.sum(abs(batch.outputs) ** 2 * used, axis=1)
-        percent[batch.members] = 100 * (1 - np.sqrt(error / size))
-    return percent
+        np.add.at(error, batch.members, np.sum(abs(batch.outputs - flow.output) ** 2 * used, axis=1))
+        np.add.at(size, batch.members, np.sum(abs(batch.outputs) ** 2 * used, axis=1))
+    return np.asarray(100 * (1 - np.sqrt(error / size)))
 
 
 def _spread(rows: Rows, chosen: Sequence[BoolArray]) -> BoolArray:
@@ -220,6 +226,17 @@ def _points(rows: Rows) -> list[tuple[str, BoolArray]]:
     for point in every:
         chosen = [np.repeat(np.all(b.points == point, axis=1)[:, None], len(b.omega), axis=1) for b in rows.batches]
         found.append((f"p = {', '.join(f'{value:g}' for value in point)}", _spread(rows, chosen)))
+    return found
+
+
+def _paths(rows: Rows) -> list[tuple[str, BoolArray]]:
+    """From each input to each output, where there are several; noise is made uncorrelated in their order."""
+    outputs, inputs = rows.batches[0].shape
+    found = []
+    for port in (Port(i, k) for i in range(outputs) for k in range(inputs)) if outputs * inputs > 1 else ():
+        chosen = [port.acts(b.ports, len(b.points)) for b in rows.batches]
+        lines = [np.repeat(one[:, None], len(b.omega), axis=1) for one, b in zip(chosen, rows.batches, strict=True)]
+        found.append((str(port), _spread(rows, lines)))
     return found
 
 

@@ -85,6 +85,8 @@ def _with_logged(parts: Sequence[Batch], logged: Sequence[Mapping[str, float]]) 
 
 def _grid(part: Batch) -> object:
     kind = (
+        part.shape,
+        part.decoupling is None,
         part.signals is None,
         part.scaled,
         part.freedom,
@@ -110,7 +112,7 @@ def _joined(group: list[Batch]) -> Batch:
     }
     stated: dict[str, Any] = {
         name: None if getattr(first, name) is None else np.concatenate([getattr(part, name) for part in group])
-        for name in ("signals", "ends", "transients", "begun", "parts", "scatter")
+        for name in ("signals", "ends", "transients", "begun", "parts", "scatter", "ports", "decoupling")
     }
     nuisances = [part.nuisance for part in group if part.nuisance is not None]
     between = tuple(b for part in group for b in part.between)
@@ -121,6 +123,8 @@ def _joined(group: list[Batch]) -> Batch:
         freedom=first.freedom,
         raw_freedom=first.raw_freedom,
         half_width=first.half_width,
+        shape=first.shape,
+        coupled=first.coupled,
         nuisance=_padded(nuisances) if nuisances else None,
         slopes=None if first.slopes is None else np.concatenate([p.slopes for p in group if p.slopes is not None]),
         scaled=first.scaled,
@@ -155,11 +159,16 @@ def _one(m: int, data: Measurement, mean_value: bool, clock: float, wandering: b
 
 
 def _of_response(m: int, data: FrequencyResponse) -> Batch:
-    """A frequency response without variances is weighted by its own size; the scale of the errors is then not known."""
+    """A frequency response without variances is weighted by its own size; the scale of the errors is then not known.
+
+    With several inputs or outputs each path is a row, and the covariance between them is taken out.
+    """
+    (n_y, n_u), several = data.matrices.shape[1:], data.matrices[0].size > 1
     known = data.variance is not None
     variance = data.variance if data.variance is not None else abs(data.response) ** 2
     freedom = np.inf if data.variance_degrees_of_freedom is None else 2 * data.variance_degrees_of_freedom
-    if known and freedom <= 4:
+    coupled = n_y if data.covariance is not None else 1
+    if known and freedom <= 2 * coupled + 2:
         raise MisuseError(
             f"the variances come from {freedom / 2:g} degrees of freedom, too few to weigh with; measure at least"
             " four periods or give the records themselves",
@@ -167,16 +176,22 @@ def _of_response(m: int, data: FrequencyResponse) -> Batch:
         )
     if np.any(variance == 0):
         raise MisuseError("a response is zero and has no variance; state the variances", "experiments")
-    one = np.ones((1, len(data)))
     order = np.argsort(data.frequencies)
+    outputs = data.response[order].reshape(len(data), -1).T
+    variances = np.asarray(variance[order].reshape(len(data), -1).T, dtype=np.float64)
+    rows = len(outputs)
     return Batch(
-        points=np.array([data.operating_point], dtype=np.float64),
+        points=np.array([data.operating_point] * rows, dtype=np.float64),
         omega=data.frequencies[order],
-        inputs=one.astype(np.complex128),
-        outputs=data.response[None, order],
-        variances=np.asarray(variance[None, order], dtype=np.float64),
-        classes=np.full((1, len(data)), EXCITED),
-        members=np.array([m]),
+        inputs=np.ones(outputs.shape, dtype=np.complex128),
+        outputs=outputs,
+        variances=variances,
+        classes=np.full(outputs.shape, EXCITED),
+        members=np.full(rows, m),
+        ports=np.array([(i, k) for i in range(n_y) for k in range(n_u)]) if several else None,
+        shape=(n_y, n_u),
+        decoupling=None if data.covariance is None else _decoupling(data.covariance[order], variances.T),
+        coupled=coupled,
         sample_time=data.sample_time,
         freedom=freedom,
         raw_freedom=freedom,
@@ -185,6 +200,11 @@ def _of_response(m: int, data: FrequencyResponse) -> Batch:
         hold_stated=True,
         channels=data.channels,
     )
+
+
+def _decoupling(covariance: ComplexArray, variances: FloatArray) -> ComplexArray:
+    """D^½ L⁻¹ (1, K, c, c) for C = L Lᴴ (K, c, c) with the diagonal D (K, c)."""
+    return np.asarray(np.sqrt(variances)[:, :, None] * np.linalg.inv(np.linalg.cholesky(covariance)))[None]
 
 
 def _of_periodic(m: int, record: TimeRecord, mean_value: bool, clock: float, wandering: bool) -> Batch:

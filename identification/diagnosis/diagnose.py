@@ -24,6 +24,7 @@ from identification.extension.settle import off_poles, settled
 from identification.models.model import Model, require_matching
 from identification.outcome import TestResult
 from identification.places.place import Effect
+from identification.places.ports import EVERYWHERE, Port
 from identification.places.variance import ParameterSpread
 
 DETECTION = 1.959963984540054 + 1.2815515655446004
@@ -42,6 +43,7 @@ class Visibility:
     kept: float
     reason: str = ""
     judged: bool = True
+    port: Port = EVERYWHERE
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,7 +139,8 @@ def diagnose(
     before = _rest("lack of fit", base, seed)
     missing = bool(ordered) and ordered[0].adjusted_p < LEVEL and before.share > material
     listed = refit_short_list(base, ordered if missing else (), origin=model)
-    found = variations(base, np.random.default_rng(seed)) if rows.scaled and not cannot else ()
+    one_channel = rows.batches[0].shape == (1, 1)
+    found = variations(base, np.random.default_rng(seed)) if rows.scaled and not cannot and one_channel else ()
     drifting = any(one.p_value < STRICT and one.effect.of_periods and one.gain > 0 for one in found)
     announced = () if cannot else tuple(one for one in _announced(listed) if not (drifting and one.misplaced))
     after = _rest("remaining lack of fit", announced[0].fit, seed) if announced else before
@@ -283,6 +286,7 @@ def confusability(scores: Sequence[Score]) -> FloatArray:
 
 def _visibility(candidate: Candidate) -> Visibility:
     if not candidate.signatures:
-        return Visibility(candidate.effect, None, 0.0, candidate.why_not, candidate.judged)
+        return Visibility(candidate.effect, None, 0.0, candidate.why_not, candidate.judged, candidate.port)
     best = max(candidate.signatures, key=lambda one: float(np.linalg.norm(one.gain)))
-    return Visibility(best.placed.effect, DETECTION / float(np.linalg.norm(best.gain, 2)), best.kept)
+    detectable = DETECTION / float(np.linalg.norm(best.gain, 2))
+    return Visibility(best.placed.effect, detectable, best.kept, port=candidate.port)

@@ -97,7 +97,8 @@ def refit_short_list(
     beside = _penalised(none, base)
     ordered = sorted(scores, key=lambda score: -score.statistic)
     large = misfit_is_large(base)
-    scanned = {id(score) for score in ordered if large and states_scan(score.candidate.effect)}
+    first = {score.candidate.effect.kind: score for score in reversed(ordered)}
+    scanned = {id(score) for score in first.values() if large and states_scan(score.candidate.effect)}
     strong = {id(ordered[i]): starts for i, starts in strong_starts(base, ordered).items()}
     ordered = [
         score for score in ordered if not strong or id(score) in strong or not on_signals(score.candidate.effect)
@@ -137,10 +138,12 @@ def _needless(base: Fit, score: Score, found: Sequence[tuple[Score, Fit]]) -> bo
 
 def _without_needless(ordered: Sequence[Evidence]) -> list[Evidence]:
     """Without effects that refine another one, unless they take at least half of a material rest that it leaves."""
-    left = {one.score.candidate.effect.kind: 1 - one.share for one in ordered if one.announceable}
+    left = {
+        (c.effect.kind, c.port): 1 - one.share for one in ordered if one.announceable for c in [one.score.candidate]
+    }
 
     def needed(one: Evidence) -> bool:
-        plain = left.get(one.score.candidate.effect.refines)
+        plain = left.get((one.score.candidate.effect.refines, one.score.candidate.port))
         return plain is None or (plain > 0 and 1 - one.share <= plain / 2)
 
     return [one for one in ordered if needed(one)]
@@ -217,8 +220,7 @@ def _refitted(base: Fit, score: Score, hopeless: float, origin: Model | None, st
     attempts = [] if found else [_attempt(base, score, start, hopeless) for start in _starts(base, score)]
     found += [one for one in attempts if one is not None]
     if origin is not None:
-        one = score.signature.placed
-        starts = scanned_starts(base, origin, one.effect, one.degree)
+        starts = scanned_starts(base, origin, score.signature.placed)
         found += [fit(start, base.rows, iterations=13, tolerance=0.05) for start in starts]
     if not found:
         return None

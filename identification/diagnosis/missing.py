@@ -15,7 +15,7 @@ WIDTH = 0.06
 class MissingResponse:
     """What is missing from the response, δG (M, F) at `frequencies` (F,) rad/s, with the standard deviation of |δG|.
 
-    `points` (M, s), `members` (M,) say which measurement each row is.
+    `points` (M, s), `members` (M,) say which measurement each row is, `ports` (M, 2) which output and input, from 0.
     """
 
     points: FloatArray
@@ -23,6 +23,7 @@ class MissingResponse:
     response: ComplexArray
     deviation: FloatArray
     members: IntArray
+    ports: IntArray | None = None
 
 
 def missing_response(found: Fit, count: int = 60, width: float = WIDTH) -> tuple[MissingResponse, ...]:
@@ -54,4 +55,4 @@ def _smoothed(batch: Batch, change: ComplexArray, count: int, width: float) -> M
     information = (weight * abs(inputs) ** 2) @ kernel.T
     response = (weight * inputs.conj() * change[:, lines]) @ kernel.T / information
     deviation = np.sqrt((weight * abs(inputs) ** 2) @ (kernel**2).T) / information
-    return MissingResponse(batch.points, grid, response, deviation, batch.members)
+    return MissingResponse(batch.points, grid, response, deviation, batch.members, batch.ports)

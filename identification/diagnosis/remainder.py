@@ -145,8 +145,17 @@ def _features(base: Fit) -> list[tuple[FloatArray, FloatArray]]:
     found = []
     for batch, flow in zip(batches, base.flows, strict=True):
         logarithm = np.log(np.maximum(batch.omega, 1e-300))[:, None]
-        found.append((_kernel(flow.setting.points, points, 1.0), _kernel(logarithm, nodes, width)))
+        at_points = _of_channels(batch, _kernel(flow.setting.points, points, 1.0))
+        found.append((at_points, _kernel(logarithm, nodes, width)))
     return found
+
+
+def _of_channels(batch: Batch, at_points: FloatArray) -> FloatArray:
+    """Features of rows (M, n), those of every path of their own: what is missing there says nothing of the others."""
+    if batch.ports is None:
+        return at_points
+    of_path = np.eye(batch.shape[0] * batch.shape[1])[batch.ports @ np.array([batch.shape[1], 1])]
+    return np.asarray((at_points[:, :, None] * of_path[:, None, :]).reshape(len(at_points), -1))
 
 
 def _spread_points(points: FloatArray) -> FloatArray:

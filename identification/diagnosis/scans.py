@@ -20,7 +20,7 @@ def misfit_is_large(base: Fit) -> bool:
     return bool(base.residual @ base.residual > LARGE**2 * measured)
 
 
-def scanned_starts(base: Fit, origin: Model, effect: Effect, degree: int) -> list[Model]:
+def scanned_starts(base: Fit, origin: Model, like: PlacedEffect) -> list[Model]:
     """Models with the effect, from which its refit may begin: the best of its scan after a few steps.
 
     The scan is made around the model as it was given and around its refit `base` without the effect: where much is
@@ -31,8 +31,8 @@ def scanned_starts(base: Fit, origin: Model, effect: Effect, degree: int) -> lis
     for model in (origin, base.model):
         flows = tuple(model.respond(batch) for batch in base.rows.batches)
         variables = flows[0].setting.points.shape[1]
-        for one, amplitude in effect.scan(flows):
-            trial = model.plus(placed(one, degree, variables, amplitude))
+        for one, amplitude in like.effect.scan(flows):
+            trial = model.plus(placed(one, like.degree, variables, amplitude, like.port))
             tried.append((_after_a_step(trial, base.rows), abs(amplitude), trial))
     few = [model for cost, model in _smallest_of_alike(tried)[:TRIED] if np.isfinite(cost)]
     begun = [fit(model, base.rows, iterations=FEW_STEPS, tolerance=0.05) for model in few]

@@ -1,7 +1,7 @@
 """What every effect would change, whitened, and cleared of what the fitted parameters can do."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -11,9 +11,11 @@ from identification.effects.misplaced_point import MisplacedPoint
 from identification.extension.fit import Fit
 from identification.extension.rows import effect_tangents
 from identification.lti.whiteness import orthonormal
+from identification.places.linear import Coefficient
 from identification.places.nonlinear import Feedback
 from identification.places.place import Effect
 from identification.places.placed import PlacedEffect, placed
+from identification.places.ports import EVERYWHERE, Port, ports
 
 INVISIBLE = 1e-4
 RECORDS = "it acts on signals, which only records of at least two periods show; these experiments are not all periodic"
@@ -58,6 +60,7 @@ class Candidate:
     looked_at: int = 1
     why_not: str = ""
     judged: bool = True
+    port: Port = EVERYWHERE
 
 
 def tangent_space(fit: Fit) -> FloatArray:
@@ -71,7 +74,26 @@ def candidates(fit: Fit, effects: Sequence[Effect], degree: int = 0) -> tuple[Ca
     Effects on signals and misplaced points enter a model once, and only one whose shape is fitted at each place.
     """
     space, first = tangent_space(fit), _first_readings(effects, fit)
-    return tuple(_candidate(fit, effect, degree, space, first) for effect in effects)
+    places = ports(*fit.rows.batches[0].shape)
+    found = []
+    for effect in effects:
+        there = _candidates(fit, effect, degree, space, first, places)
+        found += there if any(one.signatures for one in there) else there[:1]
+    return tuple(found)
+
+
+def _candidates(
+    fit: Fit,
+    effect: Effect,
+    degree: int,
+    space: FloatArray,
+    first: Mapping[tuple[str, int, bool], Feedback],
+    places: Sequence[Port],
+) -> list[Candidate]:
+    """The effect in every place that it may act in: coefficients are those of all channels together."""
+    if isinstance(effect, Coefficient):
+        places = (EVERYWHERE,)
+    return [replace(_candidate(fit, effect, degree, space, first, port), port=port) for port in places]
 
 
 def _first_readings(effects: Sequence[Effect], fit: Fit) -> dict[tuple[str, int, bool], Feedback]:
@@ -82,7 +104,12 @@ def _first_readings(effects: Sequence[Effect], fit: Fit) -> dict[tuple[str, int,
 
 
 def _candidate(
-    fit: Fit, effect: Effect, degree: int, space: FloatArray, first: Mapping[tuple[str, int, bool], Feedback]
+    fit: Fit,
+    effect: Effect,
+    degree: int,
+    space: FloatArray,
+    first: Mapping[tuple[str, int, bool], Feedback],
+    port: Port,
 ) -> Candidate:
     if not all(effect.judgeable(flow) for flow in fit.flows):
         return Candidate(
@@ -96,7 +123,7 @@ def _candidate(
         return Candidate(effect, (), why_not=taken, judged=False)
     variables = fit.flows[0].setting.points.shape[1]
     offered = _variants(fit, effect)
-    variants = [placed(one, degree, variables) for one in offered if _is_first(one, first)]
+    variants = [placed(one, degree, variables, port=port) for one in offered if _is_first(one, first)]
     if not variants:
         return Candidate(effect, (), why_not=ALIKE if offered else NOTHING)
     changes = _changes(fit, variants)

@@ -31,15 +31,19 @@ class LinearResponse:
     left_out: tuple[Effect, ...]
 
 
-def linear_response(model: Model, points: ArrayLike, omega: FloatArray) -> LinearResponse:
+def linear_response(
+    model: Model, points: ArrayLike, omega: FloatArray, channel: tuple[int, int] = (0, 0)
+) -> LinearResponse:
     """G(p, ω) at points (M, s) and ω (F,): exact with effects that act linearly, else that of the linear core.
+
+    `channel`: output and input, counted from 0.
 
     The covariance is J P Jᵀ, to first order in the joint covariance P of all parameters; without effects P_θ.
     """
     held = [_acts_linearly(one.effect) for one in model.effects]
     left_out = tuple(one.effect for one, kept in zip(model.effects, held, strict=True) if not kept)
     kept = with_only(replace(model, joint_covariance=model.known_covariance), held)
-    batch = _unit_input(model.dependence.points(points), omega)
+    batch = _unit_input(model, points, omega, channel)
     with np.errstate(divide="ignore", invalid="ignore"):
         flow = kept.respond(batch)
         known = kept.joint_covariance
@@ -49,16 +53,16 @@ def linear_response(model: Model, points: ArrayLike, omega: FloatArray) -> Linea
 
 def response_phase(model: Model, point: Sequence[float] | FloatArray, omega: FloatArray) -> FloatArray:
     """arg G(p, ω) (F,) in rad of that response at one point (s,), its delays in full; see `continuous_phase`."""
-    batch = _unit_input(model.dependence.points(np.array([point], dtype=np.float64)), np.ones(1))
+    batch = _unit_input(model, np.array([point], dtype=np.float64), np.ones(1))
     kept = with_only(model, [_acts_linearly(one.effect) for one in model.effects])
-    setting = kept.setting(batch.points)
+    setting = kept.setting(batch.points, batch.ports)
     late = model.structure.dead_time(setting.zeta)[0] + sum(
         one.effect.dead_time(one.amplitude(setting, batch))[0] for one in kept.effects
     )
 
     def response(w: FloatArray) -> ComplexArray:
         with np.errstate(divide="ignore", invalid="ignore"):
-            return np.asarray(kept.respond(_unit_input(batch.points, w)).output[0])
+            return np.asarray(kept.respond(_unit_input(kept, batch.points, w)).output[0])
 
     return continuous_phase(response, omega, float(late), model.structure.memory)
 
@@ -66,7 +70,7 @@ def response_phase(model: Model, point: Sequence[float] | FloatArray, omega: Flo
 def coefficients(model: Model, points: ArrayLike) -> FloatArray:
     """ζ(p) at the points (M, s) with what effects change of it, (M, n)."""
     changing = [isinstance(one.effect, Coefficient) and _acts_linearly(one.effect) for one in model.effects]
-    batch = _unit_input(model.dependence.points(points), np.ones(1))
+    batch = _unit_input(model, points, np.ones(1))
     return with_only(model, changing).respond(batch).setting.zeta
 
 
@@ -84,8 +88,9 @@ def with_only(model: Model, held: list[bool]) -> Model:
     return replace(model, effects=effects, joint_covariance=covariance)
 
 
-def _unit_input(points: FloatArray, omega: FloatArray) -> Batch:
+def _unit_input(model: Model, at: ArrayLike, omega: FloatArray, channel: tuple[int, int] = (0, 0)) -> Batch:
     """What would be measured with U = 1, weighted such that whitened rows are real and imaginary parts."""
+    points, plant = model.dependence.points(at), (model.structure.outputs, model.structure.inputs)
     shape = (len(points), len(omega))
     return Batch(
         points=points,
@@ -95,6 +100,8 @@ def _unit_input(points: FloatArray, omega: FloatArray) -> Batch:
         variances=np.full(shape, 2.0),
         classes=np.full(shape, EXCITED),
         members=np.arange(len(points)),
+        ports=None if plant == (1, 1) else np.tile(np.array(channel), (len(points), 1)),
+        shape=plant,
     )
 
 

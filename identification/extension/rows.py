@@ -12,7 +12,7 @@ from identification.comparison.noise import noise_freedom
 from identification.models.model import Model
 from identification.places.core import Reshaped
 from identification.places.place import Effect, Flow
-from identification.places.placed import PlacedEffect, amplitude_basis
+from identification.places.placed import PlacedEffect
 from identification.places.recorder import Recorder
 
 FURTHER_STEP = 1e-4
@@ -104,7 +104,7 @@ def effect_tangents(one: PlacedEffect, rows: Rows, flows: Sequence[Flow], furthe
 
 
 def _by_amplitudes(effect: Effect, one: PlacedEffect, flow: Flow) -> ComplexArray:
-    basis = amplitude_basis(effect, one.degree, flow.setting, flow.batch)
+    basis = one.basis(flow.setting, flow.batch)
     tangent = effect.tangent(one.amplitude(flow.setting, flow.batch), flow)
     columns = tangent[:, None] * basis.T[None, :, :, None]
     found = np.asarray(columns.reshape(-1, *tangent.shape[1:]))

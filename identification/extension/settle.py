@@ -45,7 +45,7 @@ def off_poles(model: Model, batches: Sequence[Batch]) -> Model:
     largest entry, from which a fit begins as well.
     """
     with np.errstate(divide="ignore", invalid="ignore"):
-        finite = all(np.isfinite(core_response(model.setting(b.points), (), b.omega)).all() for b in batches)
+        finite = all(np.isfinite(core_response(model.setting(b.points, b.ports), (), b.omega)).all() for b in batches)
     if finite:
         return model
     return replace(model, theta=np.where(model.theta == 0, BESIDE * np.max(abs(model.theta)), model.theta))

@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from identification.arrays import BoolArray, ComplexArray, FloatArray
+from identification.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from identification.comparison.batch import Batch
 from identification.errors import MisuseError, ShapeError
 from identification.models.physical import RationalForm
@@ -161,8 +161,8 @@ class Model:
         """The model with one effect more, not fitted yet."""
         return replace(self, effects=(*self.effects, effect), joint_covariance=None)
 
-    def setting(self, points: ArrayLike) -> Setting:
-        """ζ and its slope at the operating points (M, s)."""
+    def setting(self, points: ArrayLike, channels: IntArray | None = None) -> Setting:
+        """ζ and its slope at the operating points (M, s), seen in `channels` (M, 2)."""
         variables = self.dependence.variables
         p = self.dependence.points(points)
         low, high = np.array([(v.minimum, v.maximum) for v in variables]).T
@@ -173,13 +173,13 @@ class Model:
         lengths = np.einsum("sms->sm", up - down) / half[:, None]
         slopes = (np.array(ends[: len(half)]) - np.array(ends[len(half) :])) / lengths[..., None]
         slope = np.moveaxis(slopes, 0, -1)[:, : self.structure.n_plant]
-        return Setting(self.structure, zeta, (p - low) / half - 1, slope)
+        return Setting(self.structure, zeta, (p - low) / half - 1, slope, None, channels)
 
     def respond(self, batch: Batch, start: Flow | None = None) -> Flow:
         """The steady signals of a batch; see `identification.places.simulate`. Laws follow what they are told to."""
         if batch.followed is not None:
             return self.follow(batch, batch.followed)
-        setting = self.setting(batch.points)
+        setting = self.setting(batch.points, batch.ports)
         return simulate(setting, self._acting(setting, batch), batch, start)
 
     def from_rest(self, batch: Batch) -> Flow:
@@ -202,8 +202,21 @@ class Model:
 
 def require_matching(model: Model, batches: Sequence[Batch]) -> None:
     """Raises MisuseError unless the batches can be compared with the model: time domain, operating points."""
+    shape = (model.structure.outputs, model.structure.inputs)
     for batch in batches:
         model.dependence.points(batch.points)
+        if batch.shape != shape:
+            raise MisuseError(
+                f"the model has {shape[0]} outputs and {shape[1]} inputs and the measurement {batch.shape[0]} and"
+                f" {batch.shape[1]}; compare data of the same channels",
+                "experiments",
+            )
+        if shape != (1, 1) and batch.held is not None and not model.structure.is_discrete:
+            raise MisuseError(
+                "responses of several inputs and outputs through a held input are compared with models in discrete time"
+                " only; give those of the plant itself",
+                "experiments",
+            )
         sampled = batch.sample_time is not None
         own = model.structure.sample_time
         if own is not None and not (sampled and abs((batch.sample_time or 0.0) / own - 1) < 1e-9):

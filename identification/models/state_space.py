@@ -1,11 +1,11 @@
 """State-space models of any number of inputs and outputs."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
-from identification.arrays import ComplexArray, FloatArray, require_positive
+from identification.arrays import ComplexArray, FloatArray, IntArray, require_positive
 from identification.errors import MisuseError, RangeError
 from identification.models.recursion import propagate
 from identification.models.structure import NOT_ALONG, Along, Group, Structure
@@ -85,6 +85,25 @@ class StateSpaceStructure(Structure):
         one = np.einsum("yz,uv->yuzv", np.eye(self.n_y), np.eye(self.n_u))
         by_d = np.broadcast_to(one, (*by_a.shape[:-4], *one.shape))
         return np.concatenate([part.reshape(*part.shape[:-2], -1) for part in (by_a, by_b, by_c, by_d)], axis=-1)
+
+    def channel_response(self, zeta: FloatArray, omega: FloatArray, channels: IntArray) -> ComplexArray:
+        """C_i R B_k + D_ik, nothing computed of other channels."""
+        one, places = self._of_one(channels)
+        return one.response(np.take_along_axis(zeta, places, axis=1), omega)[..., 0, 0]
+
+    def channel_gradient(self, zeta: FloatArray, omega: FloatArray, channels: IntArray) -> ComplexArray:
+        """As that of `channel_response`, zero by the entries of other channels."""
+        one, places = self._of_one(channels)
+        known = one.gradient(np.take_along_axis(zeta, places, axis=1), omega)[..., 0, 0, :]
+        found = np.zeros((len(zeta), self.n_plant, len(omega)), dtype=np.complex128)
+        np.put_along_axis(found, places[:, :, None], np.swapaxes(known, 1, 2), axis=1)
+        return found
+
+    def _of_one(self, channels: IntArray) -> tuple["StateSpaceStructure", IntArray]:
+        """The structure of one input and output, and where its entries stand in ζ for each of the channels (M, ·)."""
+        a, b, c, d = self.matrices(np.arange(self.size, dtype=np.float64))
+        parts = [np.concatenate([a.ravel(), b[:, k], c[i], [d[i, k]]]) for i, k in channels.tolist()]
+        return replace(self, n_u=1, n_y=1), np.array(parts).astype(np.int64)
 
     def poles(self, zeta: FloatArray) -> ComplexArray:
         """Eigenvalues of A."""

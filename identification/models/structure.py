@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from identification.arrays import BoolArray, ComplexArray, FloatArray
+from identification.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from identification.errors import MisuseError
 from identification.scheduling import ParameterDependence, ProductBasis, SchedulingVariable
 from identification.signals import HeldInput
@@ -168,6 +168,16 @@ class Structure(ABC):
         """∂G/∂ζ_G of `plant_response`, as (…, n_plant, F)."""
         self._require_unheld(held)
         return np.swapaxes(self.gradient(zeta, omega)[..., 0, 0, :], -1, -2)
+
+    def channel_response(self, zeta: FloatArray, omega: FloatArray, channels: IntArray) -> ComplexArray:
+        """G of ζ (M, n) from one input to one output each, `channels` (M, 2) output and input from 0, as (M, F)."""
+        rows = np.arange(len(channels))
+        return np.asarray(self.response(zeta, omega)[rows, :, channels[:, 0], channels[:, 1]])
+
+    def channel_gradient(self, zeta: FloatArray, omega: FloatArray, channels: IntArray) -> ComplexArray:
+        """∂G/∂ζ_G of `channel_response`, as (M, n_plant, F)."""
+        rows = np.arange(len(channels))
+        return np.swapaxes(self.gradient(zeta, omega)[rows, :, channels[:, 0], channels[:, 1]], 1, 2)
 
     def sampled(self, zeta: FloatArray, step: float) -> tuple[FloatArray, FloatArray] | None:
         """[A B; 0 1] (n_x + 1, n_x + 1) over one step of a held input, and C (n_x,), for ζ (n,); None: not known."""

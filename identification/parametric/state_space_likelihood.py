@@ -15,6 +15,7 @@ from identification.lti.whiteness import chi_square
 from identification.models.model import Model
 from identification.models.state_space_model import charted
 from identification.outcome import Outcome
+from identification.parametric.more_starts import drawn_starts
 from identification.parametric.pole_guarantee import fine_grid, grid
 from identification.parametric.state_space_residuals import entry_gradient, residual_and_jacobian, whitener
 from identification.parametric.triangular import triangular_factor
@@ -22,6 +23,7 @@ from identification.pole_regions.inequality import PoleRegion
 from identification.signals import FrequencyResponse
 
 PRECISION = 3e-5  # the search ends when the misfit could fall by less than this squared
+ACCEPTED_FIT, CANDIDATES = 1e-4, 40
 EFFECTIVE = 1e-7  # smaller changes of the response, relative to the largest, are taken for none
 
 
@@ -33,7 +35,8 @@ class StateSpaceLikelihood:
 
     The search moves in data-driven local coordinates, the directions of θ that change the responses, chosen anew in
     every round [McKelvey2004]. With a `region` no step is taken after which a pole leaves it at the operating points
-    of a grid; a proof for those between is not given. Where the entries can do more than the plant needs, some
+    of a grid; a proof for those between is not given. Without one, models around the best are tried too where the fit
+    is worse than known noise allows. Where the entries can do more than the plant needs, some
     directions are hardly determined and the covariance, exact to first order in the noise, is too optimistic. The
     variance of the noise is 1 when the data state variances, else it is estimated.
     """
@@ -45,6 +48,8 @@ class StateSpaceLikelihood:
     margin: Annotated[float, "how far inside the region, as largest eigenvalue of its matrix inequality"] = 1e-6
     rounds: Annotated[int, "most changes of the local coordinates"] = 10
     max_iterations: Annotated[int, "most iterations of each round"] = 30
+    more_starts: Annotated[int, "how often more first models are drawn while known noise does not explain the fit"] = 3
+    seed: Annotated[int, "of the generator that draws them"] = 0
 
     def estimate(self, start: Model, experiments: Sequence[FrequencyResponse]) -> Estimate:
         """The refined model with the covariance of its entries, with a test of fit where the variances are known.
@@ -53,9 +58,23 @@ class StateSpaceLikelihood:
         or of another sample time or size than the data.
         """
         self._check(start, experiments)
+        best = self._searched(start, experiments, self.rounds)
+        generator = np.random.default_rng(self.seed)
+        for _ in range(0 if self.region is not None else self.more_starts):
+            if _fits(best):
+                break
+            drawn = drawn_starts(best.model, experiments, CANDIDATES, generator)
+            few = [self._searched(one, experiments, 1) for one in drawn]
+            if few:
+                carried_on = self._searched(min(few, key=_misfit).model, experiments, self.rounds)
+                best = min(best, carried_on, key=_misfit)
+        return best
+
+    def _searched(self, start: Model, experiments: Sequence[FrequencyResponse], rounds: int) -> Estimate:
+        """What a search of so many rounds reaches from a start."""
         model, whiteners = start, [whitener(data) for data in experiments]
         iterations, cost = 0, np.inf
-        for _ in range(self.rounds):
+        for _ in range(rounds):
             solution, chart = self._round(model, experiments, whiteners)
             model, iterations = _moved(model, chart @ solution.x), iterations + solution.outcome.iterations
             if solution.outcome.ok or solution.cost > cost * (1 - PRECISION**2):
@@ -118,6 +137,15 @@ class StateSpaceLikelihood:
     def example(cls) -> "StateSpaceLikelihood":
         """A small one, for the conformance tests."""
         return cls()
+
+
+def _fits(found: Estimate) -> bool:
+    """Whether the noise explains what is left, where its size is known; more starts would tell nothing elsewhere."""
+    return not found.tests or found.tests[0].p_value > ACCEPTED_FIT
+
+
+def _misfit(found: Estimate) -> float:
+    return found.tests[0].statistic
 
 
 def _chart(jacobian: FloatArray) -> FloatArray:

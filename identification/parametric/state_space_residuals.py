@@ -40,5 +40,17 @@ def residual_and_jacobian(
     return np.concatenate([error.real, error.imag]), np.concatenate([gradient.real, gradient.imag])
 
 
+def whitened_error(
+    model: Model, experiments: Sequence[FrequencyResponse], whiteners: Sequence[ComplexArray]
+) -> FloatArray:
+    """r of `residual_and_jacobian` alone."""
+    errors = []
+    for data, weight in zip(experiments, whiteners, strict=True):
+        response = model.frequency_response([data.operating_point], data.frequencies)[0]
+        errors.append(_weighted(weight, (data.matrices - response).reshape(len(data), -1, 1)).ravel())
+    error = np.sqrt(2) * np.concatenate(errors)
+    return np.concatenate([error.real, error.imag])
+
+
 def _weighted(weight: ComplexArray, values: ComplexArray) -> ComplexArray:
     return np.asarray(weight * values if weight.shape[2] == 1 else weight @ values)

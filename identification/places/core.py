@@ -61,6 +61,8 @@ def core_response(
     structure = setting.structure
 
     def plain(zeta: FloatArray, omega: FloatArray, held: HeldInput | None) -> ComplexArray:
+        if setting.channels is not None:
+            return structure.channel_response(zeta, omega, setting.channels)
         return structure.plant_response(zeta, omega, held)
 
     plant: Plant = plain
@@ -86,6 +88,8 @@ def core_gradient(
 ) -> ComplexArray:
     """∂Ĝ/∂ζ_G (M, n_plant, K): exact, or by central differences where effects reshape the plant."""
     reshaping = [one for one in acting if isinstance(one[0], Reshaped) and (entry or not one[0].on_entry)]
+    if not reshaping and setting.channels is not None:
+        return setting.structure.channel_gradient(setting.zeta, omega, setting.channels)
     if not reshaping:
         return setting.structure.plant_gradient(setting.zeta, omega, held)
     columns = []

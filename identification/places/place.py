@@ -10,7 +10,7 @@ from typing import ClassVar, Literal, Protocol, Self
 
 import numpy as np
 
-from identification.arrays import ComplexArray, FloatArray
+from identification.arrays import ComplexArray, FloatArray, IntArray
 from identification.comparison.batch import Batch
 from identification.models.hold import hold_factor
 from identification.models.structure import Structure
@@ -61,7 +61,7 @@ class Setting:
 
     `zeta` (M, n); `points` (M, s) scaled to −1 … 1 over the range of the scheduling variables; `zeta_slope`
     (M, n_plant, s): ∂ζ_G by the scaled scheduling variables; `passed` (M, n_plant): ∂ζ_G by what T(p) θ gives, where
-    effects divide it, None: one.
+    effects divide it, None: one; `channels` (M, 2): output and input of each row, None: the only ones.
     """
 
     structure: Structure
@@ -69,6 +69,7 @@ class Setting:
     points: FloatArray
     zeta_slope: FloatArray
     passed: FloatArray | None = None
+    channels: IntArray | None = None
 
 
 @dataclass(frozen=True, eq=False)
