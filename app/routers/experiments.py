@@ -19,7 +19,8 @@ from app.schemas.experiments import (
     RecordSpectrumDocument,
 )
 from app.schemas.jobs import Job
-from app.services import experiment_data, experiments
+from app.schemas.measured_responses import MeasuredResponseDocument
+from app.services import experiment_data, experiments, measured_responses
 from app.services.jobs import accepted
 
 router = APIRouter(prefix="/experiments", tags=["experiments"])
@@ -167,6 +168,12 @@ def get_experiment_data(experimentId: str, container: ContainerDependency) -> Ex
 def get_experiment_spectrum(experimentId: str, container: ContainerDependency) -> RecordSpectrumDocument:
     """The amplitudes of input, output and noise of a time record over frequency."""
     return experiment_data.spectrum(container, experimentId)
+
+
+@router.get("/{experimentId}/frequency-response")
+def get_measured_response(experimentId: str, container: ContainerDependency) -> MeasuredResponseDocument:
+    """The response of an experiment of one channel, with its noise; of impedances the linear Kramers–Kronig test."""
+    return measured_responses.measured(container, experimentId)
 
 
 @router.get("/{experimentId}/file", response_class=Response, responses=file_answer(*get_args(Format)))

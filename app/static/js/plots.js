@@ -22,7 +22,8 @@ export function plot(place, { draw, caption, table = null, height = 340, label =
   place.append(h("figure", {}, chart, h("figcaption", {}, caption), saving, table && tableBehind(table)));
   const render = () => {
     const { data, layout } = draw();
-    return globalThis.Plotly.react(chart, data, styled(layout, height, data), SETTINGS);
+    const shown = styled(layout, height, data);
+    return globalThis.Plotly.react(chart, data.map((trace) => withHover(trace, shown)), shown, SETTINGS);
   };
   drawings.set(chart, whenNear(chart, async () => {
     await loadPlotly();
@@ -92,20 +93,47 @@ function styled(layout, height, data) {
     ...layout,
   };
   for (const name of Object.keys(result).filter((key) => /^[xy]axis\d*$/.test(key))) {
-    const ticks = result[name].type === "log" ? { dtick: logarithmicStep(data, name) } : {};
-    result[name] = { ...line, ...ticks, ...result[name], title: { standoff: 10, ...result[name].title } };
+    const ticks = result[name].type === "log" ? logarithmicStep(data, name) : {};
+    result[name] = { ...line, ...ticks, ...roomForConstant(data, name, result[name]), ...result[name], title: { standoff: 10, ...result[name].title } };
   }
   return result;
 }
 
-// At most some eight ticks: whole decades, or 1, 2 and 5 where there are few.
-function logarithmicStep(data, name) {
+// What a point says when pointed at: both numbers under the titles of their axes, which carry the units.
+function withHover(trace, layout) {
+  if (trace.hovertemplate || trace.hoverinfo || ["heatmap", "bar"].includes(trace.type)) return trace;
+  const said = ["x", "y"].map((letter) => {
+    const title = layout[(trace[`${letter}axis`] ?? letter).replace(/^[xy]/, `${letter}axis`)]?.title?.text || letter;
+    return `${title}: %{${letter}${typeof trace[letter]?.[0] === "number" ? ":.4~g" : ""}}`;
+  });
+  return { ...trace, hovertemplate: `${said.join("<br>")}<extra>${trace.name ?? ""}</extra>` };
+}
+
+// The least and the largest number along an axis.
+function extent(data, name) {
   const [, letter, number] = /^([xy])axis(\d*)$/.exec(name);
   const own = data.filter((trace) => (trace[`${letter}axis`] ?? letter) === letter + number);
-  const values = own.flatMap((trace) => [...(trace[letter] ?? [])]).filter((one) => one > 0);
-  const [low, high] = values.reduce(([least, most], one) => [Math.min(least, one), Math.max(most, one)], [Infinity, 0]);
+  const values = own.flatMap((trace) => [...(trace[letter] ?? [])]).filter((one) => typeof one === "number" && Number.isFinite(one));
+  return (positive) => values.filter((one) => !positive || one > 0).reduce(([least, most], one) => [Math.min(least, one), Math.max(most, one)], [Infinity, -Infinity]);
+}
+
+// At most some eight ticks: whole decades, or 1, 2 and 5 where there are few; plotly.js knows best within half a decade.
+function logarithmicStep(data, name) {
+  const [low, high] = extent(data, name)(true);
   const decades = Math.log10(high / low);
-  return decades > 1.5 ? Math.ceil(decades / 8) : "D2";
+  if (!(decades > 0.7)) return {};
+  return { dtick: decades > 1.5 ? Math.ceil(decades / 8) : "D2" };
+}
+
+// Values that are all the same, but for rounding, stand in the middle of an axis of about their size.
+function roomForConstant(data, name, axis) {
+  if (axis.range || axis.rangemode || !["log", "linear"].includes(axis.type)) return {};
+  const log = axis.type === "log";
+  const [low, high] = extent(data, name)(log);
+  if (!(high - low <= 1e-9 * Math.max(Math.abs(low), Math.abs(high)))) return {};
+  if (log) return { range: [Math.log10(low) - 0.5, Math.log10(low) + 0.5] };
+  const half = Math.abs(low) / 2 || 1;
+  return { range: [low - half, low + half] };
 }
 
 onThemeChange(() => {

@@ -4,6 +4,9 @@ import { hertz, labelled, significant } from "./numbers.js";
 import { axis, linkAxes, plot } from "./plots.js";
 import { faded, seriesColour, symbol } from "./palette.js";
 
+const SURE = 0.35; // standard deviation over size of a value whose phase is known
+const REMEMBERED = 3;
+
 // Gain and phase of a measured response, of every channel where there are several.
 export function drawResponse(place, plant, data) {
   const frequencies = data.frequenciesRadPerSecond.map(hertz);
@@ -52,14 +55,15 @@ export function gains({ re, im }) {
   return re.map((real, i) => Math.hypot(real, im[i]));
 }
 
-// Phase in degrees without jumps.
-function unwrapped({ re, im }) {
-  let turns = 0;
-  let before = null;
+// Phase in degrees without jumps: each stands within half a turn of those before it that are no noise.
+export function unwrapped({ re, im, deviation = null }) {
+  const recent = [];
   return re.map((real, i) => {
     const angle = (180 / Math.PI) * Math.atan2(im[i], real);
-    if (before != null && Math.abs(angle - before) > 180) turns += angle < before ? 1 : -1;
-    before = angle;
-    return angle + 360 * turns;
+    const expected = recent.length ? [...recent].sort((a, b) => a - b)[recent.length >> 1] : angle > 170 ? -180 : angle;
+    const near = angle + 360 * Math.round((expected - angle) / 360);
+    if (!(deviation?.[i] > SURE * Math.hypot(real, im[i]))) recent.push(near);
+    if (recent.length > REMEMBERED) recent.shift();
+    return near;
   });
 }

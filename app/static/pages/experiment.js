@@ -4,6 +4,7 @@ import { download, get } from "../js/api.js";
 import { context } from "../js/context.js";
 import { byId, facts, h, message, replace } from "../js/dom.js";
 import { submitButton } from "../js/forms.js";
+import { drawMeasured } from "../js/measured_plots.js";
 import { counted, duration, exact, hertz, moment, percent, pointLabel, quantity, significant } from "../js/numbers.js";
 import { loadPlotly } from "../js/plots.js";
 import { page } from "../js/ready.js";
@@ -19,9 +20,14 @@ page(async () => {
   replace(byId("about"), about(experiment, described));
   const place = byId("plots");
   if (experiment.kind === "timeRecord") {
-    const [data, spectrum] = await Promise.all([get(`${path}/data`), get(`${path}/spectrum`)]);
+    const [data, spectrum, response] = await Promise.all([get(`${path}/data`), get(`${path}/spectrum`), get(`${path}/frequency-response`).catch((problem) => problem)]);
+    if (response.frequenciesRadPerSecond) drawMeasured(place, described, response);
+    else place.append(message("warning", (response.errors?.[0] ?? response).detail));
+    place.append(h("h2", {}, "Record"));
     drawRecord(place, described, [data.input], [data.output], data.sampleTimeSeconds, experiment.understood.periodSamples);
     drawSpectrum(place, described, spectrum);
+  } else if (experiment.kind === "frequencyResponse") {
+    drawMeasured(place, described, await get(`${path}/frequency-response`));
   } else {
     drawOther(place, described, await get(`${path}/data`));
   }
