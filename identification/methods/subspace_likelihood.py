@@ -22,7 +22,7 @@ class SubspaceLikelihood(Method):
     """
 
     kind: ClassVar[str] = "subspace_likelihood"
-    takes: ClassVar[Takes] = Takes((TimeRecord, FrequencyResponse), (StateSpaceStructure,), start=True)
+    takes: ClassVar[Takes] = Takes((TimeRecord, FrequencyResponse), (StateSpaceStructure,), start=True, prior=True)
 
     refinement: StateSpaceLikelihood = field(default_factory=StateSpaceLikelihood)
 
@@ -30,24 +30,24 @@ class SubspaceLikelihood(Method):
         """The model with the covariance of its entries, whose rank is that of what any response shows."""
         order, discrete = task.structure.order, task.structure.is_discrete
         data = [self._response(one, discrete) for one in held_still(task)]
-        start = task.start
+        start = task.start or task.prior
         if start is None:
             progress(0.1, "the subspace estimate")
             first = ParametricSubspace(order=order, region=self.refinement.region)
             start = first.estimate(task.dependence, data).model
         progress(0.4, "maximum likelihood")
-        return self.refinement.estimate(start, data)
+        return self.refinement.estimate(start, data, task.prior)
 
     def refuses(self, task: Task) -> str | None:
         """Responses must have the channels of the structure; a start must be of it."""
-        start = task.start
-        if start is not None and (start.structure, start.dependence) != (task.structure, task.dependence):
-            return "the start has another structure or dependence; give one of those asked for"
+        for name, given in (("start", task.start), ("prior", task.prior)):
+            if given is not None and (given.structure, given.dependence) != (task.structure, task.dependence):
+                return f"the {name} has another structure or dependence; give one of those asked for"
         asked = (task.structure.outputs, task.structure.inputs)
         for one in held_still(task):
-            given = one.matrices.shape[1:] if isinstance(one, FrequencyResponse) else (1, 1)
-            if given != asked:
-                return f"the data have {given} outputs × inputs and the structure {asked}; give the same in both"
+            channels = one.matrices.shape[1:] if isinstance(one, FrequencyResponse) else (1, 1)
+            if channels != asked:
+                return f"the data have {channels} outputs × inputs and the structure {asked}; give the same in both"
         return None
 
     def _response(self, one: TimeRecord | FrequencyResponse, discrete: bool) -> FrequencyResponse:

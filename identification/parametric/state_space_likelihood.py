@@ -24,6 +24,7 @@ from identification.signals import FrequencyResponse
 
 PRECISION = 3e-5  # the search ends when the misfit could fall by less than this squared
 ACCEPTED_FIT, CANDIDATES = 1e-4, 40
+KNOWN = 1e-12  # smaller variances, relative to the largest, are those of directions that no response shows
 EFFECTIVE = 1e-7  # smaller changes of the response, relative to the largest, are taken for none
 
 
@@ -51,12 +52,17 @@ class StateSpaceLikelihood:
     more_starts: Annotated[int, "how often more first models are drawn while known noise does not explain the fit"] = 3
     seed: Annotated[int, "of the generator that draws them"] = 0
 
-    def estimate(self, start: Model, experiments: Sequence[FrequencyResponse]) -> Estimate:
+    def estimate(self, start: Model, experiments: Sequence[FrequencyResponse], prior: Model | None = None) -> Estimate:
         """The refined model with the covariance of its entries, with a test of fit where the variances are known.
+
+        With a `prior`, the estimate of the same model from other data, such as a record along p(t), the search begins
+        there and ‖P^{−½}(θ − θ_prior)‖² is added, P among the state bases nearest to that of the prior.
 
         Raises NotIdentifiableError for fewer real numbers than parameters, MisuseError for a start outside the region
         or of another sample time or size than the data.
         """
+        if prior is not None:
+            return self._with_prior(prior, experiments)
         self._check(start, experiments)
         best = self._searched(start, experiments, self.rounds)
         generator = np.random.default_rng(self.seed)
@@ -69,6 +75,31 @@ class StateSpaceLikelihood:
                 carried_on = self._searched(min(few, key=_misfit).model, experiments, self.rounds)
                 best = min(best, carried_on, key=_misfit)
         return best
+
+    def _with_prior(self, prior: Model, experiments: Sequence[FrequencyResponse]) -> Estimate:
+        if any(data.variance is None for data in experiments):
+            raise MisuseError("a prior estimate is weighed against responses of known variances; state them", "data")
+        values, vectors = np.linalg.eigh(prior.theta_covariance)
+        known = values > KNOWN * values[-1]
+        weight = (vectors[:, known] / np.sqrt(values[known])).T
+        whiteners = [whitener(data) for data in experiments]
+        chart = charted(prior).chart
+        assert chart is not None, "state spaces have one"
+
+        def evaluate(delta: FloatArray) -> tuple[FloatArray, FloatArray]:
+            residual, full = residual_and_jacobian(_moved(prior, chart @ delta), experiments, whiteners)
+            change = weight @ chart
+            return np.concatenate([residual, change @ delta]), np.concatenate([full @ chart, change])
+
+        begun = np.zeros(chart.shape[1])
+        solution = levenberg_marquardt(evaluate, begun, None, self.rounds * self.max_iterations, PRECISION)
+        inflation = max(variance_inflation(data.variance_degrees_of_freedom) for data in experiments)
+        freedom = len(solution.residual) - len(begun)
+        test = chi_square("lack of fit beside the prior estimate", solution.cost, freedom)
+        model = _moved(prior, chart @ solution.x)
+        covariance = inflation * chart @ solution.covariance @ chart.T
+        found = charted(replace(model, covariance=covariance))
+        return Estimate(found, solution.outcome, (test,))
 
     def _searched(self, start: Model, experiments: Sequence[FrequencyResponse], rounds: int) -> Estimate:
         """What a search of so many rounds reaches from a start."""
