@@ -15,7 +15,7 @@ from identification.places.mixing import mixed
 
 TOLERANCE, STALLED = 1e-8, 1e-5
 MIXING, PATIENCE, NEWTON, HALVINGS = 120, 8, 60, 4
-PROVED, ROUGH, KICKS = 12, 0.02, 8
+PROVED, FEWER, ROUGH, KICKS = 12, 4, 0.02, 8
 SMALLEST_SHARE, MARGIN = 1 / 16, 0.02
 SHARPENED = (0.3, 0.15, 0.08, 0.04, 0.02, 0.01)
 
@@ -33,7 +33,7 @@ def steady(loop: Loop, start: ComplexArray | None = None) -> ComplexArray:
     """
     if start is not None:
         return _settled(loop, start)
-    plants = None if any(effect.remembers for effect, _ in loop.forces) else loop.plants
+    plants = None if loop.between or any(effect.remembers for effect, _ in loop.forces) else loop.plants
     if plants is None:
         return _grown(loop)
     try:
@@ -92,9 +92,13 @@ def _mixed(loop: Loop, x: ComplexArray) -> tuple[ComplexArray, bool]:
 
 
 def _newton(loop: Loop, x: ComplexArray) -> ComplexArray:
-    """Newton's method, each record with its own length of the step."""
+    """Newton's method, each record with its own length of the step; given up sooner where it is only nearly one.
+
+    That is so where plants are followed between their samples.
+    """
     rest = loop.update(x) - x
-    sizes, kicks = [_errors(rest, x)], KICKS
+    sizes = [_errors(rest, x)]
+    kicks, patience = (0, FEWER) if loop.between else (KICKS, PROVED)
     for _ in range(NEWTON):
         step = Linearised(loop, x).solve(rest, ROUGH)
         before = x
@@ -107,7 +111,7 @@ def _newton(loop: Loop, x: ComplexArray) -> ComplexArray:
             return x
         sizes.append(size)
         waiting = size > TOLERANCE
-        stuck = len(sizes) > PROVED and np.all(size[waiting] > 0.5 * sizes[-1 - PROVED][waiting])
+        stuck = len(sizes) > patience and np.all(size[waiting] > 0.5 * sizes[-1 - patience][waiting])
         if not moved or not np.all(np.isfinite(size)) or stuck:
             break
     if _error(rest, x) <= STALLED:
