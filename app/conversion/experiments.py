@@ -19,6 +19,7 @@ from app.schemas.experiments import (
     TimeRecordRequest,
 )
 from app.store.arrays import ArrayStore
+from identification.arrays import FloatArray
 from identification.channels import UNSTATED, Channels
 from identification.comparison.batch import Batch
 from identification.comparison.gather import gather
@@ -40,7 +41,7 @@ def requested_measurement(request: Request) -> Measurement:
             point,
             request.period_samples,
         )
-        return under(request, record)
+        return under(request, record, reference=None if request.reference is None else np.array(request.reference))
     return plainest(
         FrequencyResponse(
             np.array(request.frequencies_rad_per_second),
@@ -56,10 +57,15 @@ def requested_measurement(request: Request) -> Measurement:
 HOLDS: dict[InputHold, Hold] = {"zeroOrder": "zero", "firstOrder": "first", "bandLimited": "band"}
 
 
-def under(conditions: RecordConditions, data: Measurement, channels: Channels = UNSTATED) -> Measurement:
+def under(
+    conditions: RecordConditions,
+    data: Measurement,
+    channels: Channels = UNSTATED,
+    reference: FloatArray | None = None,
+) -> Measurement:
     """A measurement with what was stated of its channels; raises MisuseError for levels of a frequency response."""
     data = replace(data, channels=channels)
-    if not conditions.stated:
+    if not conditions.stated and reference is None:
         return data
     if not isinstance(data, TimeRecord):
         raise MisuseError(
@@ -74,7 +80,8 @@ def under(conditions: RecordConditions, data: Measurement, channels: Channels = 
             replace(channels.output, level=conditions.output_level),
         ),
         hold=None if conditions.input_hold is None else HOLDS[conditions.input_hold],
-        feedback=conditions.feedback,
+        feedback=conditions.feedback or data.feedback,
+        reference=data.reference if reference is None else reference,
     )
 
 
@@ -111,7 +118,7 @@ def kept_measurement(
         assert experiment.sample_time_seconds is not None, "time records have a sample time"
         period = experiment.understood.period_samples
         record = TimeRecord(arrays["input"], arrays["output"], experiment.sample_time_seconds, point, period)
-        return under(experiment, record, channels)
+        return under(experiment, record, channels, arrays.get("reference"))
     return FrequencyResponse(
         arrays["frequenciesRadPerSecond"],
         arrays["response"],

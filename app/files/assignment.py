@@ -150,7 +150,7 @@ def _like_the_plants(parts: Sequence[Part], role: str, said: Said) -> Part | Non
 
 def _candidates(parts: Sequence[Part]) -> list[Part]:
     """Columns of numbers that vary, and that are neither time nor a count."""
-    known = {"time", "counter", "sample_time", "sample_rate", "period", "ignored", "repeat"}
+    known = {"time", "counter", "sample_time", "sample_rate", "period", "ignored", "repeat", "reference"}
     beside = [set(part.roles) & known and not set(part.roles) & {"input", "output"} for part in parts]
     return [
         part

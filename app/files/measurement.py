@@ -159,6 +159,12 @@ def _time_record(parts: Sequence[Part], table: Table, stated: Statements, known:
         u, y = grid.on_grid(u), grid.on_grid(y)
     period = record_period(parts, stated)
     record = TimeRecord(u, y, grid.sample_time, stated.operating_point, period)
+    asked = only(having(parts, "reference"), "reference")
+    if asked is not None:
+        r = real(asked, "reference").ravel()
+        r = grid.on_grid(r) if grid.stamps is not None and len(grid.stamps) == len(r) else r
+        record = replace(record, feedback=True, reference=r)
+        notes.append(f"The column {asked.column.name!r} is the reference of a loop: a controller acted on the output.")
     return Reading(record, (*notes, *grid.notes))
 
 
@@ -267,6 +273,7 @@ def _scalar(part: Part, what: str, convert: Callable[[Part], FloatArray]) -> flo
 def measurement_arrays(data: Measurement) -> dict[str, NDArray[Any]]:
     """The arrays that are kept of a measurement."""
     if isinstance(data, TimeRecord):
-        return {"input": data.input, "output": data.output}
+        found = {"input": data.input, "output": data.output}
+        return found if data.reference is None else {**found, "reference": data.reference}
     arrays: dict[str, NDArray[Any]] = {"frequenciesRadPerSecond": data.frequencies, "response": data.response}
     return arrays if data.variance is None else {**arrays, "variance": data.variance}

@@ -12,6 +12,7 @@ CHOICES = (
     "time",
     "input",
     "output",
+    "reference",
     "frequency",
     "frequenciesRadPerSecond",
     "frequencyHz",
@@ -45,6 +46,7 @@ NAMES: Mapping[str, tuple[str, ...]] = MappingProxyType(
         ),
         "input": _words("input u inputs in eingang excitation stimulus eingangssignal inputdata "),
         "output": _words("output y outputs out ausgang ausgangssignal outputdata "),
+        "reference": _words("reference setpoint sollwert referenz führungsgröße fuehrungsgroesse consigne "),
         "frequency": _words(
             "frequency frequencies freq freqs f fr frq frequenz frequenzen fréquence frecuencia frequenza frequência "
         ),

@@ -62,6 +62,10 @@ class TimeRecordRequest(LocalExperimentFields, RecordConditions):
     period_samples: Annotated[Integer, Field(ge=2)] | None = Field(
         default=None, description="samples in one period of a periodic input; null when it is not or unknown"
     )
+    reference: Values | None = Field(
+        default=None,
+        description="what the controller was asked for, as many values as the input; stated with `feedback` only",
+    )
 
 
 class FrequencyResponseRequest(LocalExperimentFields):

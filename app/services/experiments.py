@@ -37,11 +37,12 @@ VARIED = (
 Arrays = dict[str, NDArray[Any]]
 ARRAYS_OF_BODY = {
     *("input", "output", "frequencies_rad_per_second", "response", "variance"),
-    *("inputs", "outputs", "scheduling"),
+    *("inputs", "outputs", "scheduling", "reference"),
 }
 POINTERS = {
     "input": "/input",
     "output": "/output",
+    "reference": "/reference",
     "sample_time": "/sampleTimeSeconds",
     "period": "/periodSamples",
     "frequencies": "/frequenciesRadPerSecond",

@@ -74,6 +74,8 @@ def _looked_at(reading: Reading, payload: dict[str, Any], context: TaskContext, 
         "fileName": payload["fileName"],
         "understood": understood.as_json(),
     }
+    if isinstance(data, TimeRecord) and data.feedback:
+        document["feedback"] = True
     return TaskResult(document, kept)
 
 
@@ -142,7 +144,8 @@ def _from_body(stated: dict[str, Any], arrays: dict[str, Any]) -> Measurement:
     if stated["kind"] == "timeRecord":
         period = stated["periodSamples"]
         record = TimeRecord(arrays["input"], arrays["output"], stated["sampleTimeSeconds"], point, period)
-        return under(RecordConditions.model_validate({one: stated[one] for one in CONDITIONS & set(stated)}), record)
+        conditions = RecordConditions.model_validate({one: stated[one] for one in CONDITIONS & set(stated)})
+        return under(conditions, record, reference=arrays.get("reference"))
     return FrequencyResponse(
         arrays["frequenciesRadPerSecond"],
         arrays["response"],

@@ -13,6 +13,7 @@ from identification.models.rational import RationalStructure
 from identification.signals import TimeRecord
 from identification.simulation import simulate
 from identification.spectral.local_polynomial import LocalPolynomial
+from tests.support.loops import SLOW, in_loop, proportional
 
 PLANT = RationalStructure(2, 1, 1, sample_time=0.1), np.array([-1.5, 0.7, 1.0, 0.5])
 NOISE = RationalStructure(0, 0, n_c=1, n_d=1, sample_time=0.1), np.array([0.0, 0.3, -0.6])
@@ -119,3 +120,22 @@ def test_units_of_the_signals(seed, c, d):
     a, b = LocalPolynomial().estimate(one), LocalPolynomial().estimate(scaled)
     np.testing.assert_allclose(b.response, d / c * a.response, rtol=1e-9)
     np.testing.assert_allclose(b.variance, (d / c) ** 2 * a.variance, rtol=1e-6)
+
+
+def test_with_the_reference_of_a_loop_feedback_of_noise_leaves_no_bias():
+    """Without it the error is several times the stated one."""
+    record = in_loop(5, SLOW, proportional(1.0), feedback=True, reference=True, size=0.3)
+    found = [LocalPolynomial().estimate(one) for one in (record, replace(record, reference=None))]
+    z = []
+    for one in found:
+        q = np.exp(-1j * one.frequencies)
+        z.append(abs(one.response - 0.5 * q / (1 - 0.95 * q)) ** 2 / one.variance)
+    assert len(z[0]) > 100
+    assert np.median(z[0]) / np.log(2) == pytest.approx(1.0, abs=0.35)
+    assert np.mean(z[1]) > 3 * np.mean(z[0])
+
+
+def test_lines_that_the_reference_hardly_moves_are_left_out():
+    record = in_loop(5, SLOW, proportional(1.0), feedback=True, reference=True)
+    found = [LocalPolynomial().estimate(one) for one in (record, replace(record, reference=None))]
+    assert len(found[0]) < 0.2 * len(found[1])
