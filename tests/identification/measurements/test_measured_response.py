@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from identification.measurements.measured_response import measured_response
+from identification.measurements.measured_response import MOST_LINES, measured_response
 from identification.signals import TimeRecord
 
 
@@ -20,3 +20,10 @@ def test_a_filtered_record_gives_its_filter(periods: int, least: int) -> None:
     error = found.response - 0.3 * z / (1 - 0.7 * z)
     assert found.variance is not None
     assert 0.3 < np.median(abs(error) ** 2 / found.variance) < 2.0
+
+
+def test_a_long_record_is_drawn_at_no_more_lines_than_can_be_seen():
+    u = np.random.default_rng(1).standard_normal(20_000)
+    found = measured_response(TimeRecord(u, 0.5 * u, 1.0, (0.0,)))
+    assert 1000 < len(found) <= MOST_LINES
+    assert np.allclose(found.response, 0.5)
