@@ -253,7 +253,7 @@ def _of_periodic(m: int, record: TimeRecord, mean_value: bool, clock: float, wan
         nuisance=left_in_mean(period, 0 if trend is None else trend.degree, count, walks)[None],
         slopes=_slopes(np.where(excited, y - _between(u, y, excited) * u, y))[None],
         drift=drift.skew,
-        scatter=_scatter(y, noise.variance, record)[None],
+        scatter=_scatter(y, noise.variance, record, step)[None],
         between=(between_harmonics(level, count),),
         disturbances=(disturbances,),
         channels=record.channels,
@@ -268,10 +268,13 @@ def _of_periodic(m: int, record: TimeRecord, mean_value: bool, clock: float, wan
     )
 
 
-def _scatter(y: ComplexArray, noise: FloatArray, record: TimeRecord) -> FloatArray:
-    """`scatter_with_rate`; of a period of an odd number of samples nothing is said."""
+def _scatter(y: ComplexArray, noise: FloatArray, record: TimeRecord, step: float) -> FloatArray:
+    """`scatter_with_rate`; nothing is said of a period of an odd number of samples, nor where a converter rounds,
+
+    which flickers between two values the more often the slower the output changes.
+    """
     assert record.period is not None
-    even = record.period % 2 == 0 and bool(np.all(np.isfinite(noise[1:])))
+    even = step == 0 and record.period % 2 == 0 and bool(np.all(np.isfinite(noise[1:])))
     return scatter_with_rate(y, noise, record.sample_time) if even else np.array([0.0, np.inf])
 
 

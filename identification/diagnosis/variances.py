@@ -51,8 +51,9 @@ def variations(found: Fit, generator: np.random.Generator) -> tuple[Variation, .
 
 
 def _best(found: Fit, effect: VarianceEffect, generator: np.random.Generator) -> Variation | None:
-    if (direct := effect.seen(found.flows)) is not None:
-        return Variation(effect, *direct, 0.0, 1)
+    if effect.direct:
+        seen = effect.seen(found.flows)
+        return None if seen is None else Variation(effect, *seen, 0.0, 1)
     rows = _slopes(found) if effect.of_periods else found.residual
     if rows is None or (effect.within_points and not _repeated(found.rows.batches)):
         return None

@@ -24,6 +24,7 @@ class Jitter(VarianceEffect):
     unit: ClassVar[str] = "s"
     source: ClassVar[str] = "[PintelonSchoukens2012, Section 2.4]"
     of_periods: ClassVar[bool] = True
+    direct: ClassVar[bool] = True
     advice: ClassVar[str] = "let a clock of the hardware trigger the samples; as noise it is allowed for"
 
     def variants(self, flow: Flow) -> list[Self]:

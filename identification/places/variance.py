@@ -17,7 +17,8 @@ class VarianceEffect(ABC):
 
     `advice`: what to do about it; `of_periods`: it shows in how the periods of a record change from first to last, not
     in their mean; `within_points`: it is judged by how records at one operating point differ, which no dependence on p
-    and no misplaced point can explain. τ is in `unit`, and never negative.
+    and no misplaced point can explain; `direct`: the records tell of it without a model (`seen`). τ is in `unit`, and
+    never negative.
     """
 
     kind: ClassVar[str]
@@ -28,6 +29,7 @@ class VarianceEffect(ABC):
     place: ClassVar[str] = "variance"
     of_periods: ClassVar[bool] = False
     within_points: ClassVar[bool] = False
+    direct: ClassVar[bool] = False
 
     @classmethod
     def example(cls) -> Self:

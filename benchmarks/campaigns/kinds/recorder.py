@@ -48,6 +48,32 @@ def hum(case: str, g: np.random.Generator) -> Campaign:
     return one.made
 
 
+def two_hums(case: str, g: np.random.Generator) -> Campaign:
+    """Two sines on the sensor, one of them within a fifth of the spacing of an excited line."""
+    one = _Recorded(case, Truth(("hum",), nothing_is_right=True), stage(g), g)
+    near = g.choice(one.lines) + g.choice([-1, 1]) * g.uniform(0.1, 0.2)
+    far = int(g.integers(5, PERIOD // 3)) + g.uniform(0.3, 0.7)
+    tones = np.array([near, far]) * 2 * np.pi / (PERIOD * one.plant.sample_time)
+    for e in range(10):
+        clean = one.output(e)
+        sizes = g.uniform(0.1, 0.5, 2) * clean.std() * (e < 8)
+        phases = g.uniform(0, 2 * np.pi, 2)
+        one.add(e, clean + np.sin(np.multiply.outer(one.time, tones) + phases) @ sizes)
+    return one.made
+
+
+def input_noise(case: str, g: np.random.Generator) -> Campaign:
+    """The input is measured with noise of 3 to 20 % of it; the plant lacks nothing."""
+    one = _Recorded(case, Truth(("input_noise",), nothing_is_right=True), stage(g, int(g.integers(0, 2))), g)
+    size = g.uniform(0.03, 0.2)
+    for e in range(10):
+        u, y = one.sines(one.amplitudes[:, e], one.time), one.output(e)
+        seen = u + size * u.std() * g.standard_normal(len(u)) if e < 8 else u[:PERIOD]
+        shown, part = (one.plant.noisy(y, g), "fitted") if e < 8 else (y, "held_out")
+        one.made.record(one.points[e], seen, shown, one.plant.sample_time, PERIOD, part)
+    return one.made
+
+
 def clock_skew(case: str, g: np.random.Generator) -> Campaign:
     """The clock of the output runs fast or slow."""
     skew = g.choice([-1, 1]) * 10 ** g.uniform(-4.3, -3.3)

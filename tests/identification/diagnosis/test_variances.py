@@ -12,7 +12,18 @@ from identification.effects.library import library, variance_library
 from identification.extension.fit import fit
 from identification.extension.rows import Rows
 from identification.signals import TimeRecord
-from tests.support.oscillators import MODEL, OMEGA, PERIOD, POINTS, SAMPLE_TIME, linear, phasors, played, records
+from tests.support.oscillators import (
+    MODEL,
+    OMEGA,
+    PERIOD,
+    POINTS,
+    SAMPLE_TIME,
+    batches,
+    linear,
+    phasors,
+    played,
+    records,
+)
 
 TWICE = tuple(p for p in POINTS for _ in range(2))
 
@@ -150,3 +161,12 @@ def test_they_are_no_effects_on_the_mean():
     assert kinds == {"quantisation", "record_variation", "drifting_parameter", "jitter"}
     assert not kinds & {one.kind for one in library()}
     assert len(OMEGA) > 5
+
+
+@pytest.mark.parametrize("periods", [2, 3])
+def test_few_periods_say_nothing_of_jitter_and_break_nothing(periods):
+    """Two periods leave nothing once a straight line over them is taken off."""
+    found = diagnose(MODEL, batches(3, 0.02, periods=periods))
+    assert found.variations == ()
+    kinds = {one.effect.kind for one in variations(found.base, np.random.default_rng(0))}
+    assert ("jitter" in kinds) == (periods > 2)
