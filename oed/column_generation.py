@@ -24,6 +24,7 @@ NEGLIGIBLE = 1e-3
 REMEMBERED = 1e-4
 CAP_SLACK = 1e-6
 FEASIBLE = 1e-7
+USED = 1e-9
 BOUNDLESS = 1e6
 LITTLE = 1e-4
 DEARER = (0.0, 1e-7, 1e-6, 1e-5, 1e-4, 3e-4, 1e-3, 1e-2, 0.1, 1.0)
@@ -79,16 +80,18 @@ def least_energy(
     """
     flat = pricing.flat()
     start = [*flat[:: 1 + len(flat) // MOST_AT_START], *blocks]
-    if np.isfinite(caps).any() or any(block.use is not None for block in start):
+    bounded = bool(np.isfinite(caps).any()) or any(block.use is not None for block in start)
+    if bounded:
         found = _within_caps(pricing, targets, caps, start)
         if isinstance(found, Shortfall):
             return found
         start = found
+    feasible = start if bounded else []
     slow = False
     best = _Bounds(np.inf, 0.0, np.zeros_like(targets), np.zeros(len(caps)), np.zeros((0, len(caps))))
     active = np.arange(min(len(targets), ACTIVE_TARGETS))
     for iteration in range(1, max_iterations + 1):
-        accuracy = max(1e-8, 0.01 ** (iteration + 1))
+        accuracy = 1e-8 if bounded else max(1e-8, 0.01 ** (iteration + 1))
         master = solve_master(start, targets[active], caps, accuracy=accuracy)
         weights = _remembered(master.weights, 100 * accuracy, slow)
         offer = pricing.best(master.prices.sum(axis=0), 1 + master.cap_prices, start, weights, master.tolls)
@@ -99,7 +102,7 @@ def least_energy(
         if best.gap <= tolerance / 4 or not master.solved:
             break
         active = _with_violated(active, start, master, targets)
-        start = offer.blocks
+        start = [*offer.blocks, *feasible]
     return best.sparse(targets, caps, tolerance, iteration)
 
 
@@ -193,7 +196,8 @@ def _within_caps(
         charges = master.cap_prices + LITTLE * _part(master) / limits.sum()
         offer = pricing.best(master.prices.sum(axis=0), charges, blocks, master.weights, master.tolls)
         if master.shortfall <= FEASIBLE:
-            return [*blocks, *offer.blocks]
+            used = [block for block, weight in zip(blocks, master.weights, strict=True) if np.trace(weight) > USED]
+            return [*used, *offer.blocks]
         value = float(np.einsum("jab,jab", master.prices, targets))
         least = value - _dearer(pricing, master, charges) * float(master.tolls.sum() + limits @ charges)
         exact = 1e-3 * _part(master)

@@ -6,6 +6,7 @@ from fastapi import APIRouter, Query, Response
 
 from app.dependencies import ContainerDependency, Cursor, IdempotencyKey, Limit, ResourcesDependency
 from app.routers.downloads import file_answer, file_response
+from app.schemas.designs import DesignRequest
 from app.schemas.extensions import ExtensionRequest
 from app.schemas.identification import IdentificationRequest
 from app.schemas.jobs import Job
@@ -14,6 +15,7 @@ from app.schemas.simulations import SimulationRequest
 from app.schemas.state_space import StateSpaceModelRequest
 from app.schemas.varying import VaryingModelRequest
 from app.services import (
+    designs,
     extensions,
     identification,
     model_files,
@@ -76,6 +78,12 @@ def list_models(
 def get_model(modelId: str, resources: ResourcesDependency) -> Model:
     """One model with its accuracy and where it came from."""
     return models.get(resources, modelId)
+
+
+@router.get("/{modelId}/usual-design")
+def get_usual_design(modelId: str, container: ContainerDependency) -> DesignRequest:
+    """A request for `POST /v1/designs` to begin with: band, sample time, levels and what is known, from the data."""
+    return designs.usual(container, modelId)
 
 
 @router.get("/{modelId}/file", response_class=Response, responses=file_answer("csv", "c"))

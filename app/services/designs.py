@@ -3,16 +3,21 @@
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
+
 from app.container import Container
 from app.conversion.designs import candidate_points, energy_caps, plant_limits, searched_model
+from app.conversion.effects import extended_model
 from app.conversion.misuse import pointing
 from app.conversion.models import kept_model
+from app.conversion.usual_designs import seen_in, usual_design
 from app.errors import UnprocessableError
 from app.jobs.records import JobRecord
 from app.schemas.designs import Design, DesignList, DesignRequest
 from app.schemas.models import Model
 from app.schemas.plants import Plant
 from app.services.documents import fields, items, named, of_plant
+from app.services.experiments import experiment_of
 from app.services.jobs import fingerprint
 from app.services.measured import Measured, check_logged, check_time_domain, measured_of_plant, payload_of
 from app.services.models import model_of
@@ -20,6 +25,7 @@ from app.services.plants import plant_of
 from app.store.resources import Resource, ResourceRepository
 
 KIND = "designs"
+MOST_LOOKED_AT = 50
 POINTERS = {"excluded_points": "/excludedPoints", "energy_caps": "/energyCaps"}
 
 
@@ -59,6 +65,22 @@ def payload(plant: Plant, model: Model, request: DesignRequest, experiments: Seq
         "request": request.as_json(),
         "experiments": payload_of(experiments),
     }
+
+
+def usual(container: Container, model_id: str) -> DesignRequest:
+    """A request that gives a design from a model as it is; raises UnprocessableError for state-space models."""
+    row = container.resources.get("models", model_id)
+    document = model_of(row)
+    plant = plant_of(container.resources.get("plants", document.plant_id))
+    with pointing({}, default="/modelId", location="path"):
+        kept_model(document, plant)
+        model = extended_model(document, plant)
+    found = [container.resources.find("experiments", one) for one in document.experiment_ids]
+    kept = [(experiment_of(one), one.arrays) for one in found if one is not None]
+    records = [(one, arrays) for one, arrays in kept if one.kind == "timeRecord" and arrays is not None]
+    levels = [float(np.std(container.arrays.get(arrays)["input"])) for _, arrays in records[:MOST_LOOKED_AT]]
+    seen = seen_in(model, [one for one, _ in kept], levels)
+    return DesignRequest.model_validate(usual_design(document, plant, model, seen))
 
 
 def _check_prior(model: Model, request: DesignRequest, experiments: Sequence[Measured]) -> None:

@@ -21,6 +21,7 @@ from oed.spectra.fir import FirSpectra
 from oed.spectra.lines import LineSpectra
 from oed.spectra.multisines import Multisines
 from oed.targets.parameter_deviation import ParameterDeviation
+from oed.targets.response_deviation import ResponseDeviation
 from tests.support.random_models import paper_model, random_model
 
 LINES = 24
@@ -96,6 +97,21 @@ def test_output_power_agrees_with_the_inequality_as_written(seed: int) -> None:
     assert max(output_rms(free, found, m) for m in range(5)) <= rms * (1 + 1e-6)
     binding = [one for one in found.binding if one.what == "limit"]
     assert strongest in {one.point for one in binding}
+
+
+def test_a_limit_that_does_not_bind_changes_nothing_however_many_targets_there_are() -> None:
+    target = ResponseDeviation(tuple((float(p),) for p in range(0, 9, 2)), 0.06, 0.6, 0.01)
+    free = DesignProblem(paper_model(), np.linspace(0, 8, 17)[:, None], (target,), LineSpectra(500), 1000)
+    unlimited = design(free)
+    highest = max(output_rms(free, unlimited, m) for m in range(17))
+    loose = design(replace(free, plant_limits=(OutputPower(1.2 * highest),)))
+    assert loose.outcome.ok
+    assert loose.total_energy == pytest.approx(unlimited.total_energy, rel=3e-4)
+    assert {one.what for one in loose.binding} == {"target"}
+    tight = design(replace(free, plant_limits=(OutputPower(0.7 * highest),)))
+    assert tight.outcome.ok
+    assert tight.gap <= 1e-4
+    assert tight.total_energy > loose.total_energy
 
 
 def test_the_multiplier_of_a_limit_is_what_more_of_it_would_save() -> None:
