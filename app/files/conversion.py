@@ -6,7 +6,6 @@ from numpy.typing import NDArray
 from app.files import units
 from app.files.assignment import Part
 from app.files.contents import FileError
-from app.files.roles import HERTZ_BY_NAME
 from app.files.statements import Said, Signal
 from identification.arrays import ComplexArray, FloatArray
 
@@ -44,17 +43,12 @@ def seconds(part: Part, values: FloatArray) -> FloatArray:
     return values * found[0]
 
 
-def radians_per_second(part: Part, notes: list[str]) -> FloatArray:
+def radians_per_second(part: Part) -> FloatArray:
     """Frequencies in rad/s; raises FileError with the question of their unit where nothing says it."""
     values, unit = real(part, "frequency"), part.unit
     angular = "angular" in part.roles
     if angular and (not unit or unit in RECIPROCAL_SECONDS):
         return values
-    if not unit and part.name.plain in HERTZ_BY_NAME:
-        notes.append(
-            f"The frequencies of {part.column.name!r} are taken in Hz, which the word means; state another unit."
-        )
-        unit = "Hz"
     if not unit:
         name = part.column.name[:40]
         raise FileError(

@@ -181,7 +181,7 @@ def _file_sample_time(parts: Sequence[Part], table: Table) -> float | None:
     if step := only(having(parts, "sample_time"), "sample time"):
         return seconds_of(step)
     if rate := only(having(parts, "sample_rate"), "sample rate"):
-        value = _scalar(replace(rate, unit=rate.unit or "Hz"), "sample rate", lambda p: radians_per_second(p, []))
+        value = _scalar(replace(rate, unit=rate.unit or "Hz"), "sample rate", radians_per_second)
         return None if value is None else 2 * np.pi / value
     return table.facts.get("sampleTimeSeconds")
 

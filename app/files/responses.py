@@ -45,7 +45,7 @@ def measured(
     """
     if not entries:
         parts = _whole_lines(parts, notes)
-    omega = _frequencies(parts, notes)
+    omega = _frequencies(parts)
     response = matrices(_response(parts, entries, said, notes), len(omega), channels, "response")
     if response.ndim == 1 and len(np.unique(omega)) < len(omega):
         return _of_repeats(parts, omega, response, notes)
@@ -90,12 +90,12 @@ def _whole_lines(parts: Sequence[Part], notes: list[str]) -> list[Part]:
     ]
 
 
-def _frequencies(parts: Sequence[Part], notes: list[str]) -> FloatArray:
+def _frequencies(parts: Sequence[Part]) -> FloatArray:
     found = having(parts, "frequency", "angular")
     if not found:
         raise FileError("the file has no frequencies; name the column frequency with its unit, such as frequency (Hz)")
     with_unit = [part for part in found if part.unit or "angular" in part.roles] or found
-    values = [np.atleast_1d(radians_per_second(part, notes)).ravel() for part in with_unit]
+    values = [np.atleast_1d(radians_per_second(part)).ravel() for part in with_unit]
     for other in values[1:]:
         if other.shape != values[0].shape or np.max(np.abs(other - values[0])) > 1e-3 * np.max(np.abs(values[0])):
             only(with_unit, "frequency")

@@ -85,8 +85,6 @@ NAMES: Mapping[str, tuple[str, ...]] = MappingProxyType(
         "degrees_of_freedom": _words("variancedegreesoffreedom "),
     }
 )
-# Names that speak of rad/s or Hz by themselves: languages that keep another word for angular frequency.
-HERTZ_BY_NAME = ("frequenz", "frequenzen", "fréquence", "frequenza")
 _ROLES: dict[str, list[str]] = {}
 for _role, _names in NAMES.items():
     for _name in _names:

@@ -92,7 +92,7 @@ def test_names_of_real_and_minus_imaginary_parts(names: tuple[str, str, str]) ->
     np.testing.assert_allclose(found.response, Z, rtol=1e-12)
 
 
-@pytest.mark.parametrize("name", ["Frequency", "freq", "f", "Freqs", "frecuencia"])
+@pytest.mark.parametrize("name", ["Frequency", "freq", "f", "Freqs", "frecuencia", "Frequenz", "fréquence"])
 def test_a_frequency_without_unit_is_a_question_with_two_answers(name: str) -> None:
     text = table(f"{name},re,im", F, Z.real, Z.imag)
     with pytest.raises(FileError, match=f"units {name}=Hz or {name}=rad/s") as asked:
