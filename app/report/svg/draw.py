@@ -109,11 +109,15 @@ def _place(trace: Part, among: Sequence[Part]) -> int:
 
 
 def _line(shape: Part, pane: Pane) -> str:
-    y = float(pane.y([shape["y0"]])[0])
+    """A line across the pane, or down it where the shape spans the domain of the vertical axis."""
+    if shape["yref"].endswith("domain"):
+        d = f"M{float(pane.x([shape['x0']])[0]):.1f} {pane.top:.1f}V{pane.bottom:.1f}"
+    else:
+        d = f"M{pane.left:.1f} {float(pane.y([shape['y0']])[0]):.1f}H{pane.right:.1f}"
     line = shape.get("line", {})
     style = {"stroke": line.get("color", "currentColor"), "stroke_width": line.get("width", 2)}
     dashes = DASHES.get(line.get("dash", "solid"))
-    return element("path", d=f"M{pane.left:.1f} {y:.1f}H{pane.right:.1f}", stroke_dasharray=dashes, **style)
+    return element("path", d=d, stroke_dasharray=dashes, **style)
 
 
 def _grid(pane: Pane) -> str:

@@ -1,11 +1,15 @@
 """Cells in colour, and the bar that says what the colours mean."""
 
+from collections.abc import Sequence
+from typing import Any
+
 import numpy as np
 from plotly.colors import sample_colorscale
 
-from app.report.svg.axes import edges
+from app.report.svg.axes import Axis, edges
 from app.report.svg.elements import SIZE, element, number_label, text
 from app.report.svg.pane import Box, Pane, Part
+from identification.arrays import FloatArray
 
 BAR = 12
 STEPS = 24
@@ -28,7 +32,8 @@ def heatmap(trace: Part, pane: Pane, layout: Part) -> str:
     """A trace of the kind heatmap: a rectangle for each number."""
     values, colours = np.asarray(trace["z"], dtype=float), colours_of(trace, layout)
     shown = np.asarray(trace.get("customdata", values), dtype=float)
-    across, down = pane.x(edges(trace["x"], values.shape[1])), pane.y(edges(trace["y"], values.shape[0]))
+    across = pane.x(_edges(trace["x"], pane.horizontal, values.shape[1]))
+    down = pane.y(_edges(trace["y"], pane.vertical, values.shape[0]))
     span = colours["high"] - colours["low"] or 1.0
     parts = []
     for r, c in np.argwhere(np.isfinite(values)):
@@ -38,6 +43,10 @@ def heatmap(trace: Part, pane: Pane, layout: Part) -> str:
         title = element("title", number_label(float(f"{shown[r, c]:.3g}")))
         parts.append(element("rect", title, fill=_colour(colours["scale"], share), **box))
     return element("g", "".join(parts), shape_rendering="crispEdges")
+
+
+def _edges(values: Sequence[Any], axis: Axis, count: int) -> FloatArray:
+    return edges(axis.scale.coordinates(values) if axis.scale.kind == "category" else values, count)
 
 
 def colour_bar(colours: Part, box: Box, x: float) -> str:

@@ -46,10 +46,13 @@ class Scale:
 
 
 def coordinates(values: Sequence[object] | FloatArray, kind: str, categories: Sequence[str] = ()) -> FloatArray:
-    """Values as they stand on a kind of axis, before it is known from where to where it goes."""
+    """Values as they stand on a kind of axis, before it is known from where to where it goes.
+
+    Categories by their names; a number that names none is a place between them.
+    """
     if kind == "category":
-        places = {name: float(i) for i, name in enumerate(categories)}
-        return np.array([places[str(value)] for value in values], dtype=float)
+        places: dict[str, object] = {name: i for i, name in enumerate(categories)}
+        return np.array([places.get(str(value), value) for value in values], dtype=float)
     numbers = np.array([np.nan if value is None else value for value in values], dtype=float)
     if kind == "log":
         return np.log10(np.where(numbers > 0, numbers, np.nan))

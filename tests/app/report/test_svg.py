@@ -145,3 +145,20 @@ def test_long_curves_keep_their_extremes() -> None:
 )
 def test_ticks_are_round(scale: Scale, labels: list[str]) -> None:
     assert [label for _, label in scale.ticks(6)] == labels
+
+
+def test_cells_over_categories_and_a_line_down_the_pane():
+    figure = new_figure()
+    figure.add_heatmap(z=[[1.0, 2.0], [3.0, None]], x=["a", "b"], y=["c", "d"], zmin=0, zmax=3, colorscale="Viridis")
+    cells = [rect for rect in every(parsed(figure), "rect") if rect.find(SVG + "title") is not None]
+    places = [numbers(rect, "x", "y", "width") for rect in cells]
+    assert len(places) == 3
+    assert places[1][0] - places[0][0] == pytest.approx(places[0][2], abs=0.2)
+    assert places[2][1] < places[0][1]
+    lined = new_figure()
+    lined.add_scatter(x=[0.0, 10.0], y=[0.0, 1.0])
+    plain = len(every(parsed(lined), "path"))
+    lined.add_vline(x=5.0)
+    down = every(parsed(lined), "path")
+    assert len(down) == plain + 1
+    assert any(re.fullmatch(r"M[\d.]+ [\d.]+V[\d.]+", path.get("d", "")) for path in down)
