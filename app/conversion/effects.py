@@ -3,13 +3,15 @@
 import dataclasses
 import typing
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
 from app.arrays import finite_list_or_none
+from app.conversion.curves import curve_document
 from app.conversion.models import kept_model
 from app.conversion.varying_models import kept_varying
-from app.schemas.effects import EffectParameter, PlacedEffectDocument
+from app.schemas.effects import CurveDocument, EffectParameter, PlacedEffectDocument
 from app.schemas.models import Model as ModelDocument
 from app.schemas.plants import Plant
 from identification.arrays import FloatArray
@@ -53,8 +55,16 @@ def placed_effect(document: PlacedEffectDocument) -> PlacedEffect:
     }
     if document.quantity is not None:
         values["quantity"] = document.quantity
+    if document.curve is not None:
+        changed: Effect = dataclasses.replace(effect, **values, **_of_curve(document.curve))
+        effect, values = changed, {}
     coefficients = np.array(document.coefficients, dtype=np.float64)
     return PlacedEffect(dataclasses.replace(effect, **values), coefficients, document.amplitude_degree)
+
+
+def _of_curve(curve: CurveDocument) -> dict[str, Any]:
+    """The fields of a law that its curve states."""
+    return {"over": curve.over, "knots": tuple(curve.knots)}
 
 
 def effect_documents(model: Model) -> list[PlacedEffectDocument]:
@@ -62,7 +72,11 @@ def effect_documents(model: Model) -> list[PlacedEffectDocument]:
     start, documents = model.plant_size, []
     for one in model.effects:
         stop = start + len(one.parameters())
-        documents.append(_document(one, _deviations(model.joint_covariance, slice(start, stop))))
+        document = _document(one, _deviations(model.joint_covariance, slice(start, stop)))
+        own = slice(start, start + one.size)
+        known = None if model.joint_covariance is None else model.joint_covariance[own, own]
+        curve = curve_document(model, one, known if known is not None and np.isfinite(known).all() else None)
+        documents.append(document if curve is None else document.model_copy(update={"curve": curve}))
         start = stop
     return documents
 

@@ -9,6 +9,7 @@ from identification.arrays import FloatArray
 from identification.comparison.batch import Batch
 from identification.comparison.lack_of_fit import lack_of_fit
 from identification.diagnosis.evidence import LONGER, STRICT, Evidence, ShortList, indistinguishable, refit_short_list
+from identification.diagnosis.missing_law import is_law, with_law
 from identification.diagnosis.record_by_record import record_by_record
 from identification.diagnosis.remainder import MATERIAL, SmoothRemainder, rest
 from identification.diagnosis.scores import Score, score_tests
@@ -57,7 +58,8 @@ class Diagnosis:
     `rest_before`, `rest_after`: what is left beyond noise, relative to the output; `variation`: an effect on the
     variance that explains all that is missing, `variations`: those that show in how the periods differ; `notes` on
     measurements by their places; `confusability` (E, E): squared cosine between the signatures of `scores`;
-    `visibility` of every effect of the library.
+    `visibility` of every effect of the library; `named`: what would be announced without the law, a curve of any shape;
+    `behaves`: the first of those announced fits no better than such a curve, and is a likeness and not the cause.
     """
 
     base: Fit
@@ -77,6 +79,8 @@ class Diagnosis:
     notes: tuple[tuple[int, str], ...] = ()
     variations: tuple[Variation, ...] = ()
     variation: Variation | None = None
+    named: tuple[Evidence, ...] = ()
+    behaves: bool = False
 
     @property
     def best(self) -> Evidence | None:
@@ -94,8 +98,9 @@ class Diagnosis:
 
     @property
     def confident(self) -> bool:
-        """Whether one effect has more than 95 % of the weight of all and explains what is missing."""
-        return self.best is not None and self.best.weight > 1 - LEVEL and self._explained
+        """Whether one effect has more than 95 % of the weight of all and explains what is missing; never the law."""
+        certain = self.best is not None and self.best.weight > 1 - LEVEL and self._explained
+        return certain and not self.behaves and self.best is not None and not is_law(self.best)
 
 
 def rows_of(model: Model, batches: Sequence[Batch]) -> Rows:
@@ -138,17 +143,22 @@ def diagnose(
     cannot = why_not_judged(base, batches)
     before = _rest("lack of fit", base, seed)
     missing = bool(ordered) and ordered[0].adjusted_p < LEVEL and before.share > material
-    listed = refit_short_list(base, ordered if missing else (), origin=model)
+    names = refit_short_list(base, ordered if missing else (), origin=model)
+    listed, behaves = with_law(base, ordered if missing and not cannot else (), names)
     one_channel = rows.batches[0].shape == (1, 1)
     found = variations(base, np.random.default_rng(seed)) if rows.scaled and not cannot and one_channel else ()
     drifting = any(one.p_value < STRICT and one.effect.of_periods and one.gain > 0 for one in found)
-    announced = () if cannot else tuple(one for one in _announced(listed) if not (drifting and one.misplaced))
+    announced, named = (
+        () if cannot else tuple(one for one in _announced(each) if not (drifting and one.misplaced))
+        for each in (listed, names)
+    )
     after = _rest("remaining lack of fit", announced[0].fit, seed) if announced else before
     varying = _instead(model, base, before, listed.evidence if announced or not before.acceptable else (), found)
     if varying is None:
         verdict, reason = judged(before, after, announced, cannot, why_not_all(batches))
+        reason = _of_law(announced, behaves) + reason
     else:
-        announced, after = (), varying[1]
+        announced, named, after = (), (), varying[1]
         verdict, reason = "explained", f"{describe(varying[0])}; {after.words}; {varying[0].effect.advice}"
     return Diagnosis(
         base,
@@ -168,7 +178,20 @@ def diagnose(
         tuple(sorted(note for batch in batches for note in batch.notes)),
         tuple(one for one in found if one.p_value < STRICT and one.effect.of_periods),
         None if varying is None else varying[0],
+        named,
+        behaves and bool(announced),
     )
+
+
+def _of_law(announced: Sequence[Evidence], behaves: bool) -> str:
+    """What is to be said first where a curve without a name fits better than names, or as well."""
+    if announced and is_law(announced[0]):
+        law = announced[0].fit.model.effects[-1].effect
+        return f"no effect of the library has this shape, a curve {law.describe()} has; "
+    if announced and behaves:
+        name = announced[0].score.candidate.effect.title
+        return f"it behaves like {name}, which need not be the cause, as a curve of any shape fits as well; "
+    return ""
 
 
 def _instead(

@@ -8,6 +8,7 @@ import numpy as np
 from identification.arrays import FloatArray
 from identification.comparison.lack_of_fit import lack_of_fit
 from identification.diagnosis.measured_scan import on_signals, strong_starts
+from identification.diagnosis.penalised import is_penalised
 from identification.diagnosis.remainder import MATERIAL, Remainder, SmoothRemainder, rest
 from identification.diagnosis.scans import misfit_is_large, scanned_starts, states_scan
 from identification.diagnosis.scores import Score
@@ -90,12 +91,14 @@ def refit_short_list(
     bound `HELD`. Where the size of the noise is not known, R is the effective number of residuals of the best
     refit, and ln L is that of so many. Where much is missing, effects that state a scan are on the list in any case
     and begin from the best of it too; `origin`: the model as it was given, around which it is made. Effects on signals
-    begin from the measured output in their laws where much more than noise is missing (`strong_starts`).
+    begin from the measured output in their laws where much more than noise is missing (`strong_starts`). Curves without
+    a name are not on the list (`missing_law`).
     """
     model = SmoothRemainder(base)
     none = model.of(base)
     beside = _penalised(none, base)
-    ordered = sorted(scores, key=lambda score: -score.statistic)
+    named = [score for score in scores if not is_penalised(score.candidate.effect)]
+    ordered = sorted(named, key=lambda score: -score.statistic)
     large = misfit_is_large(base)
     first = {score.candidate.effect.kind: score for score in reversed(ordered)}
     scanned = {id(score) for score in first.values() if large and states_scan(score.candidate.effect)}
@@ -125,8 +128,8 @@ def refit_short_list(
     best = min((one for _, one in found), key=lambda one: one.cost)
     count = effective_count(best.rows, best.residual)
     evidence = sorted((_judged(model, *pair, count) for pair in found), key=lambda one: one.bic)
-    weighted = _weighted(beside, _without_needless(evidence))
-    return ShortList(tuple(weighted), none, beside, 1 - sum(one.weight for one in weighted))
+    shared = weighted(beside, _without_needless(evidence))
+    return ShortList(tuple(shared), none, beside, 1 - sum(one.weight for one in shared))
 
 
 def _needless(base: Fit, score: Score, found: Sequence[tuple[Score, Fit]]) -> bool:
@@ -307,7 +310,7 @@ def _carried_on(start: Fit, hopeless: float) -> Fit | None:
         return None
 
 
-def _weighted(none: float, ordered: Sequence[Evidence]) -> list[Evidence]:
+def weighted(none: float, ordered: Sequence[Evidence]) -> list[Evidence]:
     """With the weights of all; `none`: minus twice the log-likelihood of the smooth remainder alone, with its price."""
     values = np.array([one.bic for one in ordered])
     against = ordered[0].bic + none - ordered[0].beside

@@ -7,7 +7,7 @@ import numpy as np
 
 from identification.arrays import ComplexArray, FloatArray
 from identification.comparison.batch import Batch
-from identification.extension.fit import Fit, gauss_newton_step, moved
+from identification.extension.fit import Fit, gauss_newton_step, moved, penalised
 from identification.extension.rows import Rows, effect_tangents
 from identification.models.model import Model
 from identification.outcome import Outcome
@@ -58,7 +58,7 @@ def measured_fit(model: Model, rows: Rows, nuisance: Sequence[Nuisance] = (), it
     """
     current = _at(model, rows, nuisance)
     for i in range(iterations):
-        step, promised = gauss_newton_step(current.tangents, current.residual)
+        step, promised = gauss_newton_step(*penalised(current))
         if promised < SETTLED * (1 + float(current.residual @ current.residual)):
             return replace(current, outcome=Outcome("converged", "", i))
         current = _descended(current, step, nuisance)

@@ -28,7 +28,7 @@ def strong_starts(base: Fit, scores: Sequence[Score]) -> dict[int, list[Fit]]:
     scanned. Otherwise every variant of an effect on signals is projected on what the equation of motion leaves with θ
     alone; the best of each are fitted with θ, and of the effects those that then leave least are kept.
     """
-    if not _strong(base):
+    if not much_is_missing(base):
         return {}
     alone = measured_fit(base.model, base.rows)
     space = tangent_space(alone)
@@ -45,7 +45,8 @@ def _energy(found: Fit) -> float:
     return float(found.residual @ found.residual)
 
 
-def _strong(base: Fit) -> bool:
+def much_is_missing(base: Fit) -> bool:
+    """Whether much more than noise is left of records that repeat, so that laws are to follow the measured output."""
     return all(map(_periodic, base.rows.batches)) and _energy(base) > STRONG * base.rows.count
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from scipy.special import chdtrc, erfc, fdtrc
 
 from identification.arrays import FloatArray
+from identification.diagnosis.penalised import CurveTest, is_penalised
 from identification.diagnosis.signatures import Candidate, Signature
 from identification.extension.fit import Fit
 
@@ -33,6 +34,8 @@ class Score:
 def score_tests(fit: Fit, seen: Sequence[Candidate], generator: np.random.Generator) -> tuple[Score, ...]:
     """The tests of the visible effects, S = ‖Q r‖² with Q the projected signature.
 
+    For effects whose amplitudes are penalised S is the restricted likelihood ratio of none (`CurveTest`).
+
     S is χ² with as many degrees of freedom as amplitudes, or F where the noise variance was estimated; one-sided where
     the sign of the amplitude is physical. p of an effect with several variants, and p of the family of effects, come
     from draws of the joint normal distribution of all Q r, whose covariance Q Qᵀ is known; below the smallest p that
@@ -53,7 +56,7 @@ def score_tests(fit: Fit, seen: Sequence[Candidate], generator: np.random.Genera
     ranks = (np.argsort(np.argsort(least_null, axis=0), axis=0) + 1) / (len(least_null) + 1)
     smallest = np.sort(ranks.min(axis=1))
     family = [_tail(p, smallest, len(seen)) for p in own]
-    worth = [s - len(one.basis) * np.log(fit.rows.count) for one, s in zip(signatures, statistics, strict=True)]
+    worth = [s - _price(one, fit.rows.count) for one, s in zip(signatures, statistics, strict=True)]
     best = [int(np.argmax(worth[group])) for group in groups]
     flat = [statistics[group.start + b] for group, b in zip(groups, best, strict=True)]
     return tuple(Score(*one) for one in zip(seen, best, flat, map(float, own), family, strict=True))
@@ -62,8 +65,15 @@ def score_tests(fit: Fit, seen: Sequence[Candidate], generator: np.random.Genera
 def _statistic(one: Signature, residual: FloatArray) -> float:
     """S, with a minus sign where the amplitude would have to have the wrong sign."""
     projections = one.basis @ residual
+    if is_penalised(one.placed.effect):
+        return float(CurveTest.of(one).ratio(projections))
     wrong = _one_sided(one) and one.placed.effect.sign * projections[0] * one.gain[0, 0] < 0
     return float(projections @ projections) * (-1.0 if wrong else 1.0)
+
+
+def _price(one: Signature, count: int) -> float:
+    """c ln R; the likelihood ratio of penalised amplitudes has theirs."""
+    return 0.0 if is_penalised(one.placed.effect) else len(one.basis) * float(np.log(count))
 
 
 def _one_sided(one: Signature) -> bool:
@@ -72,6 +82,8 @@ def _one_sided(one: Signature) -> bool:
 
 def _p_value(fit: Fit, one: Signature, statistic: float) -> float:
     count = len(one.basis)
+    if is_penalised(one.placed.effect):
+        return _p_of_curve(fit, one)
     freedom, size = one.freedom, abs(statistic) / one.variance
     if not fit.rows.scaled:
         freedom = max(fit.rows.count - len(fit.tangents) - count, 1.0)
@@ -82,6 +94,20 @@ def _p_value(fit: Fit, one: Signature, statistic: float) -> float:
     if not _one_sided(one):
         return p
     return p / 2 if statistic > 0 else 1 - p / 2
+
+
+def _p_of_curve(fit: Fit, one: Signature) -> float:
+    """A bound: the likelihood ratio is less than the χ² of all amplitudes; for the share of draws it only orders."""
+    projections, count, freedom = one.basis @ fit.residual, len(one.basis), one.freedom
+    scale = 1 / one.variance
+    if not fit.rows.scaled:
+        freedom = max(fit.rows.count - len(fit.tangents) - count, 1.0)
+        left = float(fit.residual @ fit.residual) - float(projections @ projections)
+        scale = freedom / max(left, np.finfo(float).tiny)
+    elif np.isfinite(freedom):
+        scale *= freedom / max(freedom - 2, 1.0)
+    ratio = float(CurveTest.of(one).ratio(projections * np.sqrt(scale)))
+    return float(chdtrc(count, ratio) if np.isinf(freedom) else fdtrc(count, freedom, ratio / count))
 
 
 def _null_least(seen: Sequence[Candidate], generator: np.random.Generator) -> FloatArray:
@@ -104,6 +130,10 @@ def _null_least(seen: Sequence[Candidate], generator: np.random.Generator) -> Fl
 def _least(variants: Sequence[Signature], draws: FloatArray) -> FloatArray:
     """The least p over the variants for draws (DRAWS, Σ c) of their projections."""
     counts = np.array([len(one.basis) for one in variants])
+    if is_penalised(variants[0].placed.effect):
+        parts = np.split(draws, np.cumsum(counts)[:-1], axis=1)
+        ratios = [CurveTest.of(one).ratio(part) for one, part in zip(variants, parts, strict=True)]
+        return np.asarray(np.min([chdtrc(c, ratio) for c, ratio in zip(counts, ratios, strict=True)], axis=0))
     if counts.max() == 1:
         gains = np.array([float(one.gain[0, 0]) for one in variants])
         sign = variants[0].placed.effect.sign if _one_sided(variants[0]) else 0

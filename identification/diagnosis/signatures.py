@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -122,14 +123,13 @@ def _candidate(
     if taken:
         return Candidate(effect, (), why_not=taken, judged=False)
     variables = fit.flows[0].setting.points.shape[1]
-    offered = _variants(fit, effect)
+    offered = effect.variants_over(fit.flows)
     variants = [placed(one, degree, variables, port=port) for one in offered if _is_first(one, first)]
     if not variants:
         return Candidate(effect, (), why_not=ALIKE if offered else NOTHING)
     changes = _changes(fit, variants)
     projected = changes - (changes @ space.T) @ space
-    count = len(changes) // len(variants)
-    pieces = [slice(i * count, (i + 1) * count) for i in range(len(variants))]
+    pieces = [slice(*ends) for ends in pairwise(np.cumsum([0, *(one.size for one in variants)]))]
     found = [_signature(fit, one, changes[p], projected[p]) for one, p in zip(variants, pieces, strict=True)]
     seen = tuple(one for one in found if one is not None)
     why = "" if seen else effect.unseen
@@ -158,16 +158,16 @@ def _curve(effect: Effect) -> tuple[str, bool]:
     return effect.place, isinstance(effect, Feedback) and effect.on_displacement
 
 
-def _variants(fit: Fit, effect: Effect) -> list[Effect]:
-    if effect.parameters:
-        return list(effect.variants(fit.flows[0]))
-    return list(dict.fromkeys(one for flow in fit.flows for one in effect.variants(flow)))
-
-
 def _changes(fit: Fit, variants: Sequence[PlacedEffect]) -> FloatArray:
     """The whitened changes by the amplitudes of all variants, (variants · c, R)."""
     every = [effect_tangents(one, fit.rows, fit.flows, further=False) for one in variants]
     return np.concatenate(every)
+
+
+def signature_of(fit: Fit, one: PlacedEffect, space: FloatArray) -> Signature | None:
+    """That of one variant at a fit, cleared of a space with an orthonormal basis (k, R); None where nothing is left."""
+    changes = effect_tangents(one, fit.rows, fit.flows, further=False)
+    return _signature(fit, one, changes, changes - (changes @ space.T) @ space)
 
 
 def _signature(fit: Fit, one: PlacedEffect, changes: FloatArray, projected: FloatArray) -> Signature | None:

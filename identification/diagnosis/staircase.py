@@ -8,10 +8,13 @@ import numpy as np
 from identification.comparison.batch import EXCITED, Batch
 from identification.diagnosis.cross_validation import bears_out
 from identification.diagnosis.diagnose import Diagnosis, diagnose
-from identification.diagnosis.evidence import LONGER, on_bound
+from identification.diagnosis.evidence import LONGER, Evidence, on_bound
 from identification.diagnosis.exchange import looked_over
+from identification.diagnosis.missing_law import is_law
+from identification.diagnosis.penalised import is_penalised
 from identification.diagnosis.remainder import MATERIAL
 from identification.diagnosis.verdict import Verdict
+from identification.effects.library import library
 from identification.extension.fit import Fit, fit
 from identification.extension.settle import settled
 from identification.models.model import Model
@@ -20,6 +23,7 @@ from identification.places.steady import NoSteadyStateError
 
 LARGEST = 4
 MOSTLY = 0.25
+HALF = 0.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,24 +67,55 @@ def staircase(
 
     Ends when no effect is announced, after `largest` effects, or when every announced effect would raise the error on
     data that were left out of the fit (`cross_validation`) or leave the model without a steady state. Where several
-    were added, the set is looked over once more at the end, and the steps are those to what it has become. Held-out
-    data are looked at for the report only.
+    were added, the set is looked over once more at the end, and the steps are those to what it has become. Where a
+    curve without a name is announced, the way over names is kept where one or two of them explain what is missing, or
+    where the curve does not and leaves more than half of what they leave. Held-out data are looked at for the report
+    only.
     """
+    chosen = tuple(library() if effects is None else effects)
+    first = diagnose(model, batches, chosen, degree, seed)
+    start = _step(first.base, batches, held_out, first)
+    names = tuple(one for one in chosen if not is_penalised(one))
 
-    def step(found: Fit) -> Step:
-        return _step(found, batches, held_out, diagnose(found.model, batches, effects, degree, seed))
+    def climbed(among: tuple[Effect, ...], announced: Sequence[Evidence], most: int = largest) -> tuple[Step, ...]:
+        def step(found: Fit) -> Step:
+            return _step(found, batches, held_out, diagnose(found.model, batches, among, degree, seed))
 
-    first = diagnose(model, batches, effects, degree, seed)
-    steps = [_step(first.base, batches, held_out, first)]
-    while steps[-1].diagnosis.announced and len(steps) <= largest:
-        grown = _grown(steps[-1].diagnosis)
+        steps = _climbed(start, announced, step, most)
+        return steps if len(steps) < 3 else _looked_over(steps, batches, among, degree, seed, step)
+
+    if not (first.announced and is_law(first.announced[0])):
+        return climbed(chosen, first.announced)
+    lawful, ended = None, climbed(names, first.named, 1)[-1].diagnosis
+    if not (ended.left.acceptable or ended.verdict == "explained"):
+        lawful = climbed(chosen, first.announced)
+        if len(lawful) > 1 and lawful[-1].diagnosis.left.acceptable:
+            return lawful
+    named = climbed(names, first.named)
+    if named[-1].diagnosis.left.acceptable:
+        return named
+    lawful = lawful or climbed(chosen, first.announced)
+    return lawful if _better(lawful, named) else named
+
+
+def _climbed(start: Step, announced: Sequence[Evidence], step: Callable[[Fit], Step], largest: int) -> tuple[Step, ...]:
+    steps = [start]
+    while announced and len(steps) <= largest:
+        grown = _grown(steps[-1].diagnosis, announced)
         if grown is None:
             break
         try:
             steps.append(step(grown))
         except NoSteadyStateError:
             break
-    return tuple(steps) if len(steps) < 3 else _looked_over(steps, batches, effects, degree, seed, step)
+        announced = steps[-1].diagnosis.announced
+    return tuple(steps)
+
+
+def _better(lawful: Sequence[Step], named: Sequence[Step]) -> bool:
+    """Whether the way over the law ends with what is acceptable, or leaves less than half of what names leave."""
+    left = lawful[-1].diagnosis.left
+    return len(lawful) > 1 and (left.acceptable or left.share < HALF * named[-1].diagnosis.left.share)
 
 
 def _looked_over(
@@ -105,13 +140,13 @@ def _looked_over(
     return (*path, step(found))
 
 
-def _grown(found: Diagnosis) -> Fit | None:
+def _grown(found: Diagnosis, announced: Sequence[Evidence]) -> Fit | None:
     """The model with the first of the announced effects that does not raise the error on data left out of the fit.
 
     What was held by an end of its physical range is announced and not built on; so is, beside effects that are there
     already, what changes the output by less than is material.
     """
-    for one in (each for each in found.announced if not each.at_bound):
+    for one in (each for each in announced if not each.at_bound):
         try:
             grown = refined(one.fit)
             matters = not found.base.model.effects or _changed(found.base, grown) >= MATERIAL

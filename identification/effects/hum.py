@@ -22,9 +22,13 @@ class Hum(Added):
     title: ClassVar[str] = "periodic disturbance"
     unit: ClassVar[str] = "output unit"
     source: ClassVar[str] = "[PintelonSchoukens2012, Section 2.4]"
-    shapes: ClassVar[int] = 2
 
     cycles: float = 1.0
+
+    @property
+    def shapes(self) -> int:
+        """Cosine and sine."""
+        return 2
 
     def signal(self, time: FloatArray) -> FloatArray:
         """Cosine and sine."""

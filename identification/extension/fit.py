@@ -49,7 +49,7 @@ def fit(
     hopeless: float = np.inf,
     start: Sequence[Flow] | None = None,
 ) -> Fit:
-    """Minimise ‖(Y − Ŷ(θ_G, e, η))/σ‖² by Gauss–Newton steps, halved until they lead down.
+    """Minimise ‖(Y − Ŷ(θ_G, e, η))/σ‖², and penalties of effects, by Gauss–Newton steps halved until they lead down.
 
     Tangents are exact for effects that act linearly; for effects on signals they leave out terms of the order of the
     effect itself, so that the minimum is reached in a few steps more. With `exact` the last steps are taken
@@ -62,7 +62,7 @@ def fit(
     current, promised = _at(model, rows, start), np.inf
     outcome = Outcome("not_converged", "the fit stopped before its minimum; start nearer or fit fewer effects", 0)
     for i in range(iterations):
-        step, promised = gauss_newton_step(current.tangents, current.residual)
+        step, promised = gauss_newton_step(*penalised(current))
         if promised < tolerance:
             outcome = Outcome("converged", "", i)
             break
@@ -81,7 +81,33 @@ def fit(
 
 
 def _energy(found: Fit) -> float:
-    return float(found.residual @ found.residual)
+    """‖r‖² with the penalties."""
+    return float(found.residual @ found.residual) + penalty(found.model)
+
+
+def precisions(model: Model) -> FloatArray:
+    """1/variance of each of `model.parameters` before anything is measured, nought unless it is penalised."""
+    parts = [np.zeros(model.plant_size)]
+    for one in model.effects:
+        own = np.repeat(one.effect.precision(), one.coefficients.shape[1])
+        parts.append(np.pad(own, (0, len(one.parameters()) - one.size)))
+    return np.concatenate(parts)
+
+
+def penalty(model: Model) -> float:
+    """Σ c²/variance over the penalised amplitudes."""
+    return float(precisions(model) @ model.parameters**2)
+
+
+def penalised(found: Fit) -> tuple[FloatArray, FloatArray]:
+    """Tangents (k, R + n) and residual (R + n,) with a row −c/σ_c more for each of the n penalised amplitudes."""
+    root = np.sqrt(precisions(found.model))
+    chosen = np.flatnonzero(root)
+    if not len(chosen):
+        return found.tangents, found.residual
+    more = np.diag(root)[:, chosen]
+    values = -root[chosen] * found.model.parameters[chosen]
+    return np.hstack([found.tangents, more]), np.concatenate([found.residual, values])
 
 
 def _at(model: Model, rows: Rows, before: Sequence[Flow] | None) -> Fit:
@@ -104,7 +130,7 @@ def gauss_newton_step(tangents: FloatArray, residual: FloatArray) -> tuple[Float
 
 
 def _descend(current: Fit, step: FloatArray) -> Fit | None:
-    before = float(current.residual @ current.residual)
+    before = _energy(current)
     scaled = 1.0
     for _ in range(HALVINGS):
         trial = moved(current, scaled * step)
@@ -113,7 +139,7 @@ def _descend(current: Fit, step: FloatArray) -> Fit | None:
         except NoSteadyStateError:
             scaled /= 4
             continue
-        if float(found.residual @ found.residual) < before:
+        if _energy(found) < before:
             return found
         scaled /= 3
     return None
@@ -140,7 +166,7 @@ def moved(current: Fit, step: FloatArray) -> Model:
 def _polished(current: Fit) -> Fit:
     for _ in range(POLISHING):
         current = replace(current, tangents=differences(current))
-        step, promised = gauss_newton_step(current.tangents, current.residual)
+        step, promised = gauss_newton_step(*penalised(current))
         better = _descend(current, step) if promised > POLISHED else None
         if better is None:
             return current
@@ -188,7 +214,7 @@ def _with_covariance(found: Fit) -> Model:
         stop = start + len(one.parameters())
         scale[start + one.size : stop] = one.effect.values()
         start = stop
-    tangents = found.tangents / scale[:, None]
+    tangents = penalised(found)[0] / scale[:, None]
     size = np.linalg.norm(tangents, axis=1)
     if np.any(size == 0):
         return replace(found.model, joint_covariance=None)

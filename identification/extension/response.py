@@ -69,13 +69,17 @@ def response_phase(model: Model, point: Sequence[float] | FloatArray, omega: Flo
 
 def coefficients(model: Model, points: ArrayLike) -> FloatArray:
     """ζ(p) at the points (M, s) with what effects change of it, (M, n)."""
-    changing = [isinstance(one.effect, Coefficient) and _acts_linearly(one.effect) for one in model.effects]
+    changing = [isinstance(_in_place(one.effect), Coefficient) and _acts_linearly(one.effect) for one in model.effects]
     batch = _unit_input(model, points, np.ones(1))
     return with_only(model, changing).respond(batch).setting.zeta
 
 
 def _acts_linearly(effect: Effect) -> bool:
-    return isinstance(effect, LINEAR) and not effect.of_measurements
+    return isinstance(_in_place(effect), LINEAR) and not effect.of_measurements
+
+
+def _in_place(effect: Effect) -> Effect:
+    return effect.composed(np.zeros((effect.shapes, 1)))[0]
 
 
 def with_only(model: Model, held: list[bool]) -> Model:

@@ -39,7 +39,7 @@ class Reshaped(Effect):
 
     def seen(self, e: FloatArray, flow: Flow) -> ComplexArray:
         """What leaves the core (M, K) at the amplitude e (1, M), the forces in the loop as they are."""
-        acting = [*(one for one in flow.acting if one[0].kind != self.kind), (self, e)]
+        acting = [*(one for one in flow.acting if type(one[0]) is not type(self)), (self, e)]
         forces = flow.entering - flow.drive
         core = core_response(flow.setting, acting, flow.batch.omega, flow.held, True) * flow.entering
         if np.any(forces):

@@ -207,7 +207,7 @@ class Effect(ABC):
     `domain`: the kind of plant it belongs to; `unit` of e in words, `sign` +1 where only e ≥ 0 is physical, `largest`
     the largest physical |e| (None: no bound), `source` where it is described; `of_measurements`: it lies in how or when
     was measured, not in the plant; `oversampling` of the time grid on which a force is computed in continuous time;
-    `shapes` the number of amplitudes; `points_needed`: distinct values of each scheduling variable without which it
+    `points_needed`: distinct values of each scheduling variable without which it
     is a lower order under another name; `states` by how many it raises the order of the plant, infinite for distributed
     effects such as a delay or diffusion; `refines` the kind that it contains, which is kept to where it leaves nothing
     material; `unseen` says why an experiment does not show it where its signature
@@ -224,7 +224,6 @@ class Effect(ABC):
     largest: ClassVar[float | None] = None
     needs_records: ClassVar[bool] = False
     of_measurements: ClassVar[bool] = False
-    shapes: ClassVar[int] = 1
     points_needed: ClassVar[int] = 1
     oversampling: ClassVar[int] = 2
     states: ClassVar[float] = 0
@@ -238,9 +237,22 @@ class Effect(ABC):
         """An instance for tests and catalogues."""
         return cls()
 
+    @property
+    def shapes(self) -> int:
+        """The number of amplitudes."""
+        return 1
+
     @abstractmethod
     def tangent(self, e: FloatArray, flow: Flow) -> ComplexArray:
         """∂Y/∂e (shapes, M, K) at the amplitude e (shapes, M)."""
+
+    def composed(self, e: FloatArray) -> "tuple[Effect, FloatArray]":
+        """The effect of one shape, with its amplitude (1, M), that this one is at the amplitude e (shapes, M)."""
+        return self, e
+
+    def precision(self) -> FloatArray:
+        """1/variance (shapes,) of the amplitudes before anything is measured: nought unless they are penalised."""
+        return np.zeros(self.shapes)
 
     def profile(self, setting: Setting, batch: Batch) -> FloatArray:
         """How the amplitude is spread over the measurements of a batch, (M,): one everywhere unless overridden."""
@@ -249,6 +261,10 @@ class Effect(ABC):
     def dead_time(self, e: FloatArray) -> FloatArray:
         """The seconds (M,) by which all passes later at the amplitude e (shapes, M)."""
         return np.zeros(e.shape[-1])
+
+    def describe(self) -> str:
+        """What it is of, in words, where its title does not say it."""
+        return ""
 
     def judgeable(self, flow: Flow) -> bool:
         """Whether the data of this batch can show the effect at all."""
@@ -259,6 +275,12 @@ class Effect(ABC):
         names = [parameter.name for parameter in self.parameters]
         grids = [[self.scaled(p, flow, value) for value in p.values] for p in self.parameters]
         return [dataclasses.replace(self, **dict(zip(names, values, strict=True))) for values in product(*grids)]
+
+    def variants_over(self, flows: Sequence[Flow]) -> list[Self]:
+        """The variants for several batches: those of the first where further parameters make a grid, else of all."""
+        if self.parameters:
+            return self.variants(flows[0])
+        return list(dict.fromkeys(one for flow in flows for one in self.variants(flow)))
 
     def freer(self, points: FloatArray) -> list[Self]:
         """With one further parameter let go that was fixed, to be tried from where the effect was fitted."""

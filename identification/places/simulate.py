@@ -36,6 +36,7 @@ def simulate(setting: Setting, acting: Sequence[Acting], batch: Batch, start: Fl
     Raises NoSteadyStateError when there is none to be found, and MisuseError for effects that need records when the
     batch holds frequency responses.
     """
+    acting = _composed(acting)
     loop, setting = _prepared(setting, acting, batch)
     if not loop.forces:
         force, mean = np.zeros_like(loop.driven), np.zeros(len(loop.driven))
@@ -92,6 +93,7 @@ def followed(setting: Setting, acting: Sequence[Acting], batch: Batch, measured:
 
     with `core` X̄; h⁻¹ to first order in the amplitudes of sensors. Forces do not react to changes.
     """
+    acting = _composed(acting)
     loop, setting = _prepared(setting, acting, batch)
     seen = 2 * measured - _measured(measured, acting, batch)
     core, mean, force = seen, np.zeros(len(seen)), np.zeros_like(seen)
@@ -104,6 +106,10 @@ def followed(setting: Setting, acting: Sequence[Acting], batch: Batch, measured:
         core = (seen - path.beside * through) / path.factor - path.within * through
     predicted = loop.driven - loop.response * force + _reaction(setting, acting, batch)
     return _shown(setting, acting, loop, force, predicted, core, mean, None)
+
+
+def _composed(acting: Sequence[Acting]) -> list[Acting]:
+    return [effect.composed(e) for effect, e in acting]
 
 
 def _held(setting: Setting, batch: Batch) -> HeldInput | None:

@@ -7,6 +7,7 @@ import pytest
 
 from app.conversion.effects import effect_documents, placed_effect
 from app.schemas.effects import PlacedEffectDocument
+from identification.effects.law import Law, Over
 from identification.effects.library import library
 from identification.models.model import Model
 from identification.places.place import Effect
@@ -52,3 +53,27 @@ def test_deviations_are_those_of_the_effect_and_not_of_its_neighbours() -> None:
     fitted = [one.standard_deviation for one in first.parameters if one.fitted]
     assert fitted == [k + 2.0 + i for i in range(further)]
     assert second.standard_deviations == [[float(size)]]
+
+
+@pytest.mark.parametrize("over", ["displacement", "flow", "input", "output", "scheduling"])
+def test_a_curve_is_kept_with_its_knots_and_drawn_with_its_band(over: Over) -> None:
+    law = Law(over=over, knots=(-3.0, -1.0, 0.5, 1.5, 3.0), size=2.0, order=1, driven=True, coefficient=1)
+    rng = np.random.default_rng(3)
+    placed = PlacedEffect(law, rng.standard_normal((law.shapes, 1)))
+    root = rng.standard_normal((BASE.plant_size + law.shapes,) * 2)
+    covariance = root @ root.T
+    model = dataclasses.replace(BASE, effects=(placed,), joint_covariance=covariance)
+    (document,) = effect_documents(model)
+    again = placed_effect(PlacedEffectDocument.model_validate_json(document.model_dump_json(by_alias=True)))
+    assert again.effect == law
+    np.testing.assert_array_equal(again.coefficients, placed.coefficients)
+    assert document.curve is not None
+    assert document.curve.standard_deviation is not None
+    draws = rng.multivariate_normal(placed.coefficients[:, 0], covariance[BASE.plant_size :, BASE.plant_size :], 4000)
+    i = len(document.curve.argument) // 3
+    at = np.linspace(law.knots[int(law.on_signals)], law.knots[-1 - int(law.on_signals)], len(document.curve.argument))[
+        i
+    ]
+    seen = np.array([law.curve(one).each(np.array([at]))[:, 0] @ one for one in draws])
+    assert document.curve.value[i] == pytest.approx(seen.mean(), abs=5 * seen.std() / 60)
+    assert document.curve.standard_deviation[i] == pytest.approx(seen.std(), rel=0.05)

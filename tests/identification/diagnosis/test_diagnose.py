@@ -221,7 +221,9 @@ def test_an_effect_that_leaves_more_than_noise_is_not_announced_with_confidence(
     """A cubic stiffness looks much like a stop beyond a gap: most is explained, and still it is not that."""
     data = with_force(lambda x, v: 40 * x**3)
     found = diagnose(
-        MODEL, data, [one for one in library() if one.kind not in ("cubic_stiffness", "cubic_damping", "gravity")]
+        MODEL,
+        data,
+        [one for one in library() if one.kind not in ("cubic_stiffness", "cubic_damping", "gravity", "law")],
     )
     assert found.best.weight > 0.95
     assert found.remaining.p_value < 1e-3
