@@ -218,7 +218,9 @@ def picture(table: dict[str, Any]) -> Report:
     figure = new_figure(height=420)
     for i, verdict in enumerate(VERDICTS):
         shares = [100 * table[pair][name][verdict] for pair, name in cases]
-        figure.add_bar(x=list(zip(*cases, strict=True)), y=shares, name=verdict, marker={"color": colour(i)})
+        figure.add_bar(
+            x=[f"{pair}<br>{name}" for pair, name in cases], y=shares, name=verdict, marker={"color": colour(i)}
+        )
     figure.update_layout(barmode="stack")
     figure.update_yaxes(title="share of the runs (%)")
     rows = tuple((pair, name, *(f"{table[pair][name][verdict]:.0%}" for verdict in VERDICTS)) for pair, name in cases)

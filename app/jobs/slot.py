@@ -87,10 +87,19 @@ class Slot:
         if module is None:
             return Refused(f"this server does not know the job kind {job.kind!r}", None)
         try:
-            return self.child.run(job, module, lambda: not self._stopping.is_set() and self._journal.is_running(run))
+            return self.child.run(job, module, lambda: self._is_wanted(run))
         except Exception as error:
             logger.exception("job %s could not be run", job.id)
             return Faulted(repr(error))
+
+    def _is_wanted(self, run: Run) -> bool:
+        """Whether a run is still the present one; it goes on where the database cannot be asked, and is ended later."""
+        try:
+            return not self._stopping.is_set() and self._journal.is_running(run)
+        except Exception as error:
+            if fault_of(error) is None:
+                raise
+            return not self._stopping.is_set()
 
     def _record(self, job: ClaimedJob, outcome: Outcome) -> None:
         while True:

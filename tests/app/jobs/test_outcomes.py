@@ -6,8 +6,10 @@ from typing import Any
 
 import pytest
 from fastapi.testclient import TestClient
+from sqlalchemy.exc import OperationalError
 
 from app.errors import ConflictError
+from app.jobs.journal import Journal
 from app.main import create_app
 from app.settings import Settings
 from tests.app.jobs.bench import Bench
@@ -190,3 +192,13 @@ def test_list_filters_and_pages(bench: Bench) -> None:
     assert identifiers == sorted(identifiers, reverse=True)
     assert all(job["state"] == "succeeded" for job in first["items"])
     assert bench.container.ledger.list(limit=500).next_cursor is None
+
+
+def test_a_job_goes_on_where_the_database_cannot_be_asked_whether_it_is_wanted(
+    bench: Bench, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def gone(*_: object) -> bool:
+        raise OperationalError("SELECT", {}, ConnectionError("terminating connection"))
+
+    monkeypatch.setattr(Journal, "is_running", gone)
+    assert bench.run(steps=1, name="first")["state"] == "succeeded"
