@@ -63,3 +63,9 @@ def test_a_missing_docstring_and_an_unknown_source_are_seen() -> None:
     source = parse("oed.bad", Path("oed/bad.py"), text)
     assert undocumented(source) == ["oed/bad.py:4 A.f"]
     assert citations(source) == {"Nobody1999", "Ghosh2018", "Nobody2001"}
+
+
+def test_every_entry_of_the_references_is_closed() -> None:
+    text = (ROOT / "docs" / "references.bib").read_text(encoding="utf-8")
+    entries = re.split(r"^(?=@)", text, flags=re.MULTILINE)
+    assert [one[:40] for one in entries if one.count("{") != one.count("}")] == []
