@@ -83,7 +83,8 @@ def with_law(base: Fit, scores: Sequence[Score], listed: ShortList) -> tuple[Sho
     wanted = named is None or named.share < 1
     if not wanted and named is not None and not _in_doubt(named, score):
         return listed, False
-    found = fitted_law(base, score)
+    with np.errstate(over="ignore", invalid="ignore"):  # trial steps of a curve may run away; they are not taken
+        found = fitted_law(base, score)
     if found is None:
         return listed, False
     law = _evidence(base, score, found)

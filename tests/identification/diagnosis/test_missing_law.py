@@ -4,7 +4,6 @@ import dataclasses
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
 
 from identification.channels import Channel, Channels
 from identification.comparison.gather import gather
@@ -34,7 +33,6 @@ from tests.support.oscillators import (
 
 SIGMA = 1e-3
 POSITION = Channels(Channel("u", "force", "N"), Channel("y", "position", "m"))
-SPEED = Channels(Channel("u", "force", "N"), Channel("y", "velocity", "m/s"))
 MECHANICAL = [one for one in library("mechanical") if one.kind not in ("two_mass", "hysteresis")]
 
 
@@ -116,43 +114,6 @@ def test_a_name_that_fits_no_better_than_a_curve_is_a_likeness():
     assert found.behaves
     assert not found.confident
     assert found.reason.startswith("it behaves like ")
-
-
-def test_a_speed_shows_a_law_of_the_displacement_too():
-    """The same plant with its speed measured: the curve is over the integral of the output."""
-    force = lambda x, v: 300.0 * x**5  # noqa: E731
-    g = np.random.default_rng(3)
-
-    def speed(p, a):
-        def slope(t, s):
-            return [s[1], played(a, t) - (30 + 10 * p) * s[0] - 1.5 * s[1] - force(s[0], s[1])]
-
-        duration = PERIOD * SAMPLE_TIME
-        times = duration + np.arange(PERIOD) * SAMPLE_TIME
-        return solve_ivp(slope, (0, 2 * duration), [0, 0], t_eval=times, rtol=1e-9, atol=1e-11, method="DOP853").y[1]
-
-    inputs = [phasors(g, 8.0) for _ in POINTS]
-    found = records([(a, speed(p, a)) for p, a in zip(POINTS, inputs, strict=True)], g, SIGMA)
-    data = gather([dataclasses.replace(one, channels=SPEED) for one in found])
-    answer = diagnose(sensing_speed(), data, MECHANICAL)
-    law, curve = of(answer)
-    assert (law.over, law.order) == ("displacement", 1)
-    assert answer.verdict in ("explained", "partly explained")
-    x = np.linspace(law.knots[2], law.knots[-3], 60)
-    assert left_of(curve.each(x).T @ curve.coefficients, force(x, x), x) < 0.25
-
-
-def sensing_speed():
-    from identification.bases.polynomial import Polynomial
-    from identification.models.rational import RationalStructure
-    from identification.scheduling import ParameterDependence, ProductBasis
-
-    bases = tuple(ProductBasis((Polynomial(n),)) for n in (0, 1, 0, 0))
-    dependence = ParameterDependence(MODEL.variables, bases)
-    theta = np.array([1.5, 30.0, 10.0, 1.0, 0.0])
-    return dataclasses.replace(
-        MODEL, structure=RationalStructure(2, 1), dependence=dependence, theta=theta, covariance=np.eye(5)
-    )
 
 
 def test_a_coefficient_of_another_shape_over_p_is_a_curve_over_p():
