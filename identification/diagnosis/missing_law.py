@@ -177,10 +177,10 @@ def _settled(base: Fit, one: PlacedEffect, variant: int, size: float, follows: b
 
 
 def _fitted(start: Fit) -> Fit | None:
-    """From a model and signals to the minimum; None where no steady state is found."""
+    """From a model and signals to the minimum; None where no steady state is found or the motion runs away."""
     try:
         return fit(start.model, start.rows, iterations=ITERATIONS, tolerance=0.05, start=start.flows)
-    except NoSteadyStateError:
+    except (NoSteadyStateError, np.linalg.LinAlgError):
         return None
 
 
